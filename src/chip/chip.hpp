@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chip: registers and Dual-Port RAM on one side, telegrams and characters on the other, time in between.
+//
+// A Chip is moved from outside: advance() runs everything that is due, read() and write() are one processor access
+// each at now(), hear() and hear_character() bring what was received, take() fetches what it sends. It calls nobody,
+// allocates nothing and holds no pointers into itself: a copy is a snapshot.
+//
+// Order within one tick: pins and line first, then timers in the order of TimerId, then the processor access.
+// Thread rules: none inside; one thread at a time per chip.
+//
+// Not modelled here: bus cycle timing, XREADY, CLKOUT and bit-level sampling (layer pins/).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <dpchip/chip/state.hpp>
+#include <dpchip/core/archive.hpp>
+#include <dpchip/core/finding.hpp>
+#include <dpchip/core/fixed_queue.hpp>
+#include <dpchip/core/result.hpp>
+#include <dpchip/core/trace.hpp>
+#include <dpchip/fdl/transmission.hpp>
+#include <dpchip/regmap/fact.hpp>
+#include <dpchip/regmap/options.hpp>
+#include <dpchip/regmap/variant.hpp>
+
+namespace dpchip::chip {
+
+using core::Ticks;
+using regmap::Options;
+using regmap::Traits;
+using regmap::Variant;
+
+/// Everything the blocks of the chip share. Not for users: Chip is the door.
+template <class Trace>
+struct Core {
+    State s;
+    const Traits* traits;
+    Options options;
+    core::FixedQueue<Edge, 64> edges;
+    core::FixedQueue<core::Finding, 64> findings;
+    [[no_unique_address]] Trace trace;
+};
+
+/// One PROFIBUS DP slave controller. Trace: core::NoTrace or core::RingTrace; both are instantiated in chip.cpp.
+template <class Trace = core::RingTrace>
+class Chip {
+public:
+    /// In hardware reset state at time 0, Offline.
+    explicit Chip(Variant variant = Variant::vpc3c, const Options& options = {}, BusMode bus_mode = BusMode::intel);
+
+    /// A pulse on RESET at now() (8.1.2, reference 4.8). Time goes on.
+    void reset();
+
+    // ---- time -------------------------------------------------------------------------------------------------
+    Ticks now() const { return core_.s.now; }
+    /// The next moment at which the chip does something by itself; kNever when nothing is planned.
+    Ticks next() const { return core_.s.next; }
+    /// Runs everything due up to and including `to`. `to` must not be before now().
+    void advance(Ticks to);
+
+    // ---- processor side (4.2, 4.3) ----------------------------------------------------------------------------
+    /// One read cycle, side effects included (commands 09H, 0BH, 0DH..11H, 13H, 14H act). Any address is legal.
+    std::uint8_t read(std::uint16_t address);
+    /// One write cycle.
+    void write(std::uint16_t address, std::uint8_t value);
+    /// What read() would return, without any side effect: for debuggers, views and snapshots.
+    std::uint8_t peek(std::uint16_t address) const;
+    void read_block(std::uint16_t address, std::span<std::uint8_t> out);
+    void write_block(std::uint16_t address, std::span<const std::uint8_t> in);
+    /// XINT/MOT: Motorola swaps the octets of the word registers (4.2).
+    void set_bus_mode(BusMode mode) { core_.s.bus_mode = mode; }
+    BusMode bus_mode() const { return core_.s.bus_mode; }
+
+    // ---- line side: a segment::Station ------------------------------------------------------------------------
+    /// An undamaged telegram ended now; advance(t.end()) first.
+    void hear(const fdl::Transmission& t);
+    /// One character ended now; advance(c.end()) first. Every octet of a telegram this way gives the same as hear().
+    void hear_character(const fdl::Character& c);
+    /// RXD fell at `at`: a planned answer that has not begun is given up.
+    void carrier(Ticks at);
+    /// True, and `t` filled, when an answer starts now.
+    bool take(fdl::Transmission& t);
+    /// True while searching the baud rate or out of synchronisation.
+    bool hears_all() const;
+    /// R_TS_Adr as latched at Start or changed by Set_Slave_Add; 255 while Offline.
+    std::uint8_t address() const;
+
+    // ---- pins -------------------------------------------------------------------------------------------------
+    /// The present level of an output pin.
+    Level level(Pin pin) const;
+    /// 1 while X/INT is active, whatever its polarity.
+    bool interrupt_active() const { return core_.s.x_int_active != 0; }
+    /// XCTS (1.5): high holds the next character back.
+    void set_xcts(Level level);
+    /// Which output pins leave their edges in the queue; bit n is Pin n. None at first.
+    void watch(std::uint8_t pin_mask) { core_.s.watched_pins = pin_mask; }
+    core::FixedQueue<Edge, 64>& edges() { return core_.edges; }
+
+    // ---- inspection -------------------------------------------------------------------------------------------
+    Variant variant() const { return core_.traits->variant; }
+    const Traits& traits() const { return *core_.traits; }
+    DpState dp_state() const { return core_.s.dp_state; }
+    WdState wd_state() const { return core_.s.wd_state; }
+    fdl::BaudCode baud() const { return core_.s.baud; }
+    bool online() const { return core_.s.passive_idle != 0; }
+    /// Address of the master that owns the slave; 255: none.
+    std::uint8_t owner() const { return core_.s.owner; }
+    std::uint16_t user_wd_timer() const { return core_.s.user_wd_timer; }
+    std::uint16_t ram_bytes() const;
+    const Options& options() const { return core_.options; }
+    /// Options may change at any time; they hold from the next event on.
+    Options& options() { return core_.options; }
+    core::FixedQueue<core::Finding, 64>& findings() { return core_.findings; }
+    Trace& trace() { return core_.trace; }
+
+    // ---- snapshots --------------------------------------------------------------------------------------------
+    /// All there is to know about the chip, RAM included.
+    const State& state() const { return core_.s; }
+    /// Puts the chip into a state taken from a chip of the same variant.
+    void restore(const State& state);
+    /// Octets that save() needs.
+    static std::size_t snapshot_size();
+    /// Writes magic, version, variant, every field by name and a CRC. Returns the octets written, or why not.
+    core::Result<std::size_t, core::ArchiveError> save(std::span<std::uint8_t> out) const;
+    /// Reads what save() wrote. On error the chip is unchanged.
+    core::ArchiveError load(std::span<const std::uint8_t> in);
+
+private:
+    Core<Trace> core_;
+};
+
+extern template class Chip<core::NoTrace>;
+extern template class Chip<core::RingTrace>;
+
+}  // namespace dpchip::chip
