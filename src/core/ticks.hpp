@@ -51,7 +51,7 @@ constexpr Ticks seconds(std::int64_t s) { return {s * kTicksPerSecond}; }
 
 /// Whole nanoseconds in `t`, rounded down.
 constexpr std::int64_t to_ns(Ticks t) {
-    return t.n >= 0 ? t.n / kTicksPerNs : -((-t.n + kTicksPerNs - 1) / kTicksPerNs);
+    return t.n / kTicksPerNs - (t.n % kTicksPerNs < 0 ? 1 : 0);
 }
 
 namespace detail {
