@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slave_Diag in words (reference 3.7, 5.5).
+#include <dpchip/dp/diag.hpp>
+#include <dpchip/trace/service_text.hpp>
+#include <dpchip/trace/text.hpp>
+
+namespace dpchip::trace {
+namespace {
+
+std::string master_text(std::uint8_t master) {
+    return master == dp::kNoMaster ? std::string{"no master"} : std::string{"master "} + std::to_string(master);
+}
+
+std::string bits_text(const dp::DiagBlock& block, std::uint8_t station, const DeviceTexts* texts) {
+    std::string words;
+    const auto data = block.data();
+    for (std::size_t bit = 0; bit < 8 * data.size(); ++bit) {
+        if (!core::bit(data[bit / 8], static_cast<unsigned>(bit % 8))) continue;
+        const std::string text = texts != nullptr ? texts->unit_diag_bit(station, bit) : std::string{};
+        if (!text.empty()) add_word(words, std::string{"bit "} + std::to_string(bit) + " \"" + text + '"');
+    }
+    return words;
+}
+
+std::string identifier_text(const dp::DiagBlock& block) {
+    std::string words;
+    for (std::size_t n = 0; n < 8 * block.data().size(); ++n)
+        if (dp::identifier_marked(block, n)) add_word(words, std::to_string(n), " ");
+    return words.empty() ? std::string{"no module"} : "modules " + words;
+}
+
+std::string channel_text(const dp::DiagBlock& block, std::uint8_t station, const DeviceTexts* texts) {
+    const dp::ChannelDiag c = dp::channel_diag(block);
+    std::string error = texts != nullptr && c.error >= 16 ? texts->channel_error(station, c.error) : std::string{};
+    if (error.empty()) error = std::string{dp::channel_error_name(c.error)} + (c.error >= 16 ? std::string{" "} + std::to_string(c.error) : "");
+    const char* direction = c.input && c.output ? "input/output" : c.output ? "output" : c.input ? "input" : "reserved";
+    return "module " + std::to_string(c.identifier) + " channel " + std::to_string(c.channel) + ' ' + direction + ' ' +
+           dp::channel_type_name(c.type) + ": " + error;
+}
+
+std::string block_text(const dp::DiagBlock& block, std::uint8_t station, const DeviceTexts* texts) {
+    const std::string octets = hex_row(block.octets);
+    switch (block.kind) {
+    case dp::DiagBlockKind::device: {
+        const std::string bits = bits_text(block, station, texts);
+        return bits.empty() ? octets : octets + ": " + bits;
+    }
+    case dp::DiagBlockKind::identifier: return octets + ": " + identifier_text(block);
+    case dp::DiagBlockKind::channel: return octets + ": " + channel_text(block, station, texts);
+    case dp::DiagBlockKind::revision: return octets + ": revision " + std::to_string(block.number());
+    }
+    return octets;
+}
+
+void blocks_text(std::span<const std::uint8_t> ext, std::uint8_t station, const DeviceTexts* texts, DataText& text) {
+    dp::DiagBlockWalker walker{ext};
+    for (dp::DiagBlock block{}; walker.next(block);) {
+        const std::string words = block_text(block, station, texts);
+        text.details.push_back(std::string{dp::name(block.kind)} + ' ' + words);
+        if (block.kind == dp::DiagBlockKind::channel) add_word(text.words, channel_text(block, station, texts));
+        else if (block.kind == dp::DiagBlockKind::device) add_word(text.words, bits_text(block, station, texts));
+    }
+    if (walker.error() != dp::DiagError::none)
+        text.details.push_back(std::string{"damaged block ("} + dp::name(walker.error()) + ") " + hex_row(ext.subspan(walker.offset())));
+}
+
+}  // namespace
+
+DataText diag_text(std::span<const std::uint8_t> data, std::uint8_t station, const DeviceTexts* texts) {
+    DataText text;
+    const auto header = dp::decode_diag_header(data);
+    if (!header) {
+        text.words = std::string{dp::name(header.error())} + ": " + hex_row(data);
+        return text;
+    }
+    for (const dp::DiagBit& bit : dp::kDiagBits)
+        if (header->has(bit.flag)) add_word(text.words, bit.name);
+    text.details.push_back(std::string{"Diag "} + hex_row(data.first(3)) + ": " + (text.words.empty() ? "no flag" : text.words));
+    text.details.push_back(std::string{"Diag_Master_Add "} + hex_number(header->master_add) + ": " + master_text(header->master_add));
+    text.details.push_back(std::string{"Ident_Number "} + hex_number(header->ident, 4));
+    add_word(text.words, master_text(header->master_add));
+    text.words += std::string{", ident "} + hex_number(header->ident, 4);
+    const auto ext = data.subspan(dp::kDiagHeader);
+    if (!ext.empty()) text.words += std::string{", Ext_Diag_Data "} + hex_row(ext);
+    blocks_text(ext, station, texts, text);
+    return text;
+}
+
+}  // namespace dpchip::trace
