@@ -5,7 +5,7 @@
 // each at now(), hear() and hear_character() bring what was received, take() fetches what it sends. It calls nobody,
 // allocates nothing and holds no pointers into itself: a copy is a snapshot.
 //
-// Order within one tick: pins and line first, then timers in the order of TimerId, then the processor access.
+// Order within one tick: timers in the order of Timer, then the line, then the processor access.
 // Thread rules: none inside; one thread at a time per chip.
 //
 // Not modelled here: bus cycle timing, XREADY, CLKOUT and bit-level sampling (layer pins/).
@@ -15,16 +15,10 @@
 #include <cstdint>
 #include <span>
 
-#include <dpchip/chip/state.hpp>
+#include <dpchip/chip/context.hpp>
 #include <dpchip/core/archive.hpp>
-#include <dpchip/core/finding.hpp>
-#include <dpchip/core/fixed_queue.hpp>
 #include <dpchip/core/result.hpp>
-#include <dpchip/core/trace.hpp>
 #include <dpchip/fdl/transmission.hpp>
-#include <dpchip/regmap/fact.hpp>
-#include <dpchip/regmap/options.hpp>
-#include <dpchip/regmap/variant.hpp>
 
 namespace dpchip::chip {
 
@@ -32,17 +26,6 @@ using core::Ticks;
 using regmap::Options;
 using regmap::Traits;
 using regmap::Variant;
-
-/// Everything the blocks of the chip share. Not for users: Chip is the door.
-template <class Trace>
-struct Core {
-    State s;
-    const Traits* traits;
-    Options options;
-    core::FixedQueue<Edge, 64> edges;
-    core::FixedQueue<core::Finding, 64> findings;
-    [[no_unique_address]] Trace trace;
-};
 
 /// One PROFIBUS DP slave controller. Trace: core::NoTrace or core::RingTrace; both are instantiated in chip.cpp.
 template <class Trace = core::RingTrace>
@@ -55,9 +38,9 @@ public:
     void reset();
 
     // ---- time -------------------------------------------------------------------------------------------------
-    Ticks now() const { return core_.s.now; }
+    Ticks now() const { return c_.s.now; }
     /// The next moment at which the chip does something by itself; kNever when nothing is planned.
-    Ticks next() const { return core_.s.next; }
+    Ticks next() const { return c_.s.next; }
     /// Runs everything due up to and including `to`. `to` must not be before now().
     void advance(Ticks to);
 
@@ -71,15 +54,15 @@ public:
     void read_block(std::uint16_t address, std::span<std::uint8_t> out);
     void write_block(std::uint16_t address, std::span<const std::uint8_t> in);
     /// XINT/MOT: Motorola swaps the octets of the word registers (4.2).
-    void set_bus_mode(BusMode mode) { core_.s.bus_mode = mode; }
-    BusMode bus_mode() const { return core_.s.bus_mode; }
+    void set_bus_mode(BusMode mode) { c_.s.bus_mode = mode; }
+    BusMode bus_mode() const { return c_.s.bus_mode; }
 
     // ---- line side: a segment::Station ------------------------------------------------------------------------
     /// An undamaged telegram ended now; advance(t.end()) first.
     void hear(const fdl::Transmission& t);
     /// One character ended now; advance(c.end()) first. Every octet of a telegram this way gives the same as hear().
     void hear_character(const fdl::Character& c);
-    /// RXD fell at `at`: a planned answer that has not begun is given up.
+    /// RXD fell at `at`: a transmission of somebody else begins. A planned answer that has not begun is given up.
     void carrier(Ticks at);
     /// True, and `t` filled, when an answer starts now.
     bool take(fdl::Transmission& t);
@@ -92,33 +75,33 @@ public:
     /// The present level of an output pin.
     Level level(Pin pin) const;
     /// 1 while X/INT is active, whatever its polarity.
-    bool interrupt_active() const { return core_.s.x_int_active != 0; }
+    bool interrupt_active() const { return c_.s.x_int_active != 0; }
     /// XCTS (1.5): high holds the next character back.
     void set_xcts(Level level);
     /// Which output pins leave their edges in the queue; bit n is Pin n. None at first.
-    void watch(std::uint8_t pin_mask) { core_.s.watched_pins = pin_mask; }
-    core::FixedQueue<Edge, 64>& edges() { return core_.edges; }
+    void watch(std::uint8_t pin_mask) { c_.s.watched_pins = pin_mask; }
+    core::FixedQueue<Edge, 64>& edges() { return c_.edges; }
 
     // ---- inspection -------------------------------------------------------------------------------------------
-    Variant variant() const { return core_.traits->variant; }
-    const Traits& traits() const { return *core_.traits; }
-    DpState dp_state() const { return core_.s.dp_state; }
-    WdState wd_state() const { return core_.s.wd_state; }
-    fdl::BaudCode baud() const { return core_.s.baud; }
-    bool online() const { return core_.s.passive_idle != 0; }
+    Variant variant() const { return c_.traits->variant; }
+    const Traits& traits() const { return *c_.traits; }
+    DpState dp_state() const { return c_.s.dp_state; }
+    WdState wd_state() const { return c_.s.wd_state; }
+    fdl::BaudCode baud() const { return c_.s.baud; }
+    bool online() const { return c_.s.passive_idle != 0; }
     /// Address of the master that owns the slave; 255: none.
-    std::uint8_t owner() const { return core_.s.owner; }
-    std::uint16_t user_wd_timer() const { return core_.s.user_wd_timer; }
+    std::uint8_t owner() const { return c_.s.owner; }
+    std::uint16_t user_wd_timer() const { return c_.s.user_wd_timer; }
     std::uint16_t ram_bytes() const;
-    const Options& options() const { return core_.options; }
+    const Options& options() const { return c_.options; }
     /// Options may change at any time; they hold from the next event on.
-    Options& options() { return core_.options; }
-    core::FixedQueue<core::Finding, 64>& findings() { return core_.findings; }
-    Trace& trace() { return core_.trace; }
+    Options& options() { return c_.options; }
+    core::FixedQueue<core::Finding, 64>& findings() { return c_.findings; }
+    Trace& trace() { return c_.trace; }
 
     // ---- snapshots --------------------------------------------------------------------------------------------
     /// All there is to know about the chip, RAM included.
-    const State& state() const { return core_.s; }
+    const State& state() const { return c_.s; }
     /// Puts the chip into a state taken from a chip of the same variant.
     void restore(const State& state);
     /// Octets that save() needs.
@@ -129,7 +112,7 @@ public:
     core::ArchiveError load(std::span<const std::uint8_t> in);
 
 private:
-    Core<Trace> core_;
+    Context<Trace> c_;
 };
 
 extern template class Chip<core::NoTrace>;

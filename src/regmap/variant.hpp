@@ -56,6 +56,8 @@ struct Traits {
     bool prm_reserved_checks{};       ///< checks 5..8 of Set_Prm (reference 3.4.3)
     bool dis_start_reset{};           ///< Dis_Start_Control is 1 after reset
     bool sd3_proves_baud{};           ///< an SD3 telegram ends the baud rate search
+    bool chk_cfg_aux1{};              ///< Chk_Cfg comes through Aux-Buffer 1 whatever R_Aux_Buf_Sel says (reference 10.16)
+    std::uint16_t mode0_bits{};       ///< bits of Mode Register 0 that exist
 };
 
 // clang-format off
@@ -63,23 +65,28 @@ inline constexpr std::array<Traits, kVariants> kTraits{{
     {.variant = Variant::vpc3a, .name = "vpc3+", .documented = false, .ram_bytes = 2048, .max_ram_bytes = 2048, .access_violation = false,
      .release = 0x0, .mode_regs_readable = true, .dpv1 = false, .dxb = false, .isom = false, .clock_sync = false, .ext_prm = false,
      .user_timer = true, .interrupts = 0x3F1F, .min_tsdr_reset = 11, .baud_control_reset = 0x10, .din_gates_data_exch = false,
-     .gc_only_changed = false, .presets_gc_command = false, .prm_reserved_checks = false, .dis_start_reset = false, .sd3_proves_baud = true},
+     .gc_only_changed = false, .presets_gc_command = false, .prm_reserved_checks = false, .dis_start_reset = false, .sd3_proves_baud = true,
+     .chk_cfg_aux1 = false, .mode0_bits = 0x37FF},
     {.variant = Variant::vpc3b, .name = "vpc3+b", .documented = false, .ram_bytes = 2048, .max_ram_bytes = 4096, .access_violation = false,
      .release = 0xB, .mode_regs_readable = true, .dpv1 = true, .dxb = true, .isom = true, .clock_sync = false, .ext_prm = true,
      .user_timer = true, .interrupts = 0xFFFF, .min_tsdr_reset = 11, .baud_control_reset = 0x10, .din_gates_data_exch = false,
-     .gc_only_changed = false, .presets_gc_command = false, .prm_reserved_checks = true, .dis_start_reset = false, .sd3_proves_baud = true},
+     .gc_only_changed = false, .presets_gc_command = false, .prm_reserved_checks = true, .dis_start_reset = false, .sd3_proves_baud = true,
+     .chk_cfg_aux1 = true, .mode0_bits = 0x7FFF},
     {.variant = Variant::vpc3c, .name = "vpc3+c", .documented = true, .ram_bytes = 2048, .max_ram_bytes = 4096, .access_violation = false,
      .release = 0xC, .mode_regs_readable = true, .dpv1 = true, .dxb = true, .isom = true, .clock_sync = true, .ext_prm = true,
      .user_timer = true, .interrupts = 0xFFFF, .min_tsdr_reset = 11, .baud_control_reset = 0x10, .din_gates_data_exch = false,
-     .gc_only_changed = false, .presets_gc_command = false, .prm_reserved_checks = true, .dis_start_reset = false, .sd3_proves_baud = true},
+     .gc_only_changed = false, .presets_gc_command = false, .prm_reserved_checks = true, .dis_start_reset = false, .sd3_proves_baud = true,
+     .chk_cfg_aux1 = false, .mode0_bits = 0x7FFF},
     {.variant = Variant::apc3, .name = "apc3", .documented = true, .ram_bytes = 1536, .max_ram_bytes = 1536, .access_violation = true,
      .release = 0x0, .mode_regs_readable = false, .dpv1 = false, .dxb = false, .isom = false, .clock_sync = false, .ext_prm = false,
      .user_timer = false, .interrupts = 0x3F0F, .min_tsdr_reset = 11, .baud_control_reset = 0x1E, .din_gates_data_exch = true,
-     .gc_only_changed = true, .presets_gc_command = true, .prm_reserved_checks = false, .dis_start_reset = true, .sd3_proves_baud = true},
+     .gc_only_changed = true, .presets_gc_command = true, .prm_reserved_checks = false, .dis_start_reset = true, .sd3_proves_baud = true,
+     .chk_cfg_aux1 = false, .mode0_bits = 0x3BFF},
     {.variant = Variant::spc3, .name = "spc3", .documented = false, .ram_bytes = 1536, .max_ram_bytes = 1536, .access_violation = true,
      .release = 0x0, .mode_regs_readable = false, .dpv1 = false, .dxb = false, .isom = false, .clock_sync = false, .ext_prm = false,
      .user_timer = false, .interrupts = 0x3F0F, .min_tsdr_reset = 11, .baud_control_reset = 0x1E, .din_gates_data_exch = true,
-     .gc_only_changed = true, .presets_gc_command = true, .prm_reserved_checks = false, .dis_start_reset = true, .sd3_proves_baud = true},
+     .gc_only_changed = true, .presets_gc_command = true, .prm_reserved_checks = false, .dis_start_reset = true, .sd3_proves_baud = true,
+     .chk_cfg_aux1 = false, .mode0_bits = 0x3BFF},
 }};
 // clang-format on
 

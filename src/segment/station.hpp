@@ -30,9 +30,12 @@ concept Station = requires(S& s, const S& c, Ticks t, const Transmission& heard,
     { s.hear(heard) } -> std::same_as<void>;
     /// One character of a damaged transmission has just ended. All characters of it come this way, in order.
     { s.hear_character(ch) } -> std::same_as<void>;
-    /// A foreign start bit begins at `t`: a planned answer that has not begun is given up.
+    /// A foreign transmission begins at `t`; told to every station that will hear it and to every one with a planned
+    /// answer, which is given up.
     { s.carrier(t) } -> std::same_as<void>;
-    /// True and `sent` filled when the station starts sending now (sent.start == the time advanced to).
+    /// True and `sent` filled when the station starts sending now (sent.start == the time advanced to). Called after
+    /// every advance() at which the station was due; next() is later than that time afterwards. What is not exactly one
+    /// good telegram must be marked damaged, with its faults filled.
     { s.take(sent) } -> std::same_as<bool>;
     /// True while the station must hear every telegram, not only those addressed to it or to 127.
     { c.hears_all() } -> std::same_as<bool>;

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which service a request wants: the SAPs that the chip sets up by itself (6.1; reference 3.1, 3.2).
+//
+// Not modelled yet: the SAP list for SAPs 0..51 (7.2.1). Such requests are answered RS, as with an empty list.
+#pragma once
+
+#include <dpchip/chip/services/chk_cfg.hpp>
+#include <dpchip/chip/services/data_exchange.hpp>
+#include <dpchip/chip/services/get_cfg.hpp>
+#include <dpchip/chip/services/global_control.hpp>
+#include <dpchip/chip/services/rd_input.hpp>
+#include <dpchip/chip/services/rd_output.hpp>
+#include <dpchip/chip/services/set_ext_prm.hpp>
+#include <dpchip/chip/services/set_prm.hpp>
+#include <dpchip/chip/services/set_slave_add.hpp>
+#include <dpchip/chip/services/slave_diag.hpp>
+
+namespace dpchip::chip::saps {
+
+/// SRD to one of the chip's own SAPs.
+template <class C>
+Answer serve_srd(C& c, std::uint8_t dsap) {
+    switch (dsap) {
+    case 53: return set_ext_prm::serve(c);
+    case 55: return set_slave_add::serve(c);
+    case 56: return rd_input::serve(c);
+    case 57: return rd_output::serve(c);
+    case 59: return get_cfg::serve(c);
+    case 60: return slave_diag::serve(c);
+    case 61: return set_prm::serve(c);
+    case 62: return chk_cfg::serve(c);
+    default: return Answer::rs;
+    }
+}
+
+template <class C>
+bool dp_mode(const C& c) { return (c.s.mode0 & regmap::mode0::dp_mode) != 0; }
+
+/// Requests that want an answer with data: by SAP, or Data_Exchange on the default SAP.
+template <class C>
+Answer serve_request(C& c) {
+    const bool multicast = mac::function_code(c.s).request() == fdl::Request::msrd;
+    if (!dp_mode(c)) return multicast ? Answer::none : Answer::rs;
+    if (!mac::has_dsap(c.s)) return data_exchange::serve(c);
+    return multicast ? Answer::none : serve_srd(c, mac::dsap(c.s));
+}
+
+/// A repeated request gets the answer it had, as far as the state still allows it (reference 2.5).
+template <class C>
+Answer repeat(const C& c) {
+    const bool default_sap = !mac::has_dsap(c.s);
+    const bool wants_data_exch =
+        default_sap || c.s.last_answer == Answer::rd_input || c.s.last_answer == Answer::rd_output;
+    if (wants_data_exch && c.s.dp_state != DpState::data_exch) return Answer::rs;
+    if (default_sap && !dp::is_owner(c.s, mac::master(c.s))) return Answer::rs;
+    return c.s.last_answer;
+}
+
+template <class C>
+Answer serve_ident(const C& c) {
+    return c.options.ident_lsap_answer == regmap::IdentLsapAnswer::rs ? Answer::rs : Answer::none;
+}
+
+/// Does what the request asks for and decides the answer.
+template <class C>
+Answer serve(C& c) {
+    const auto request = mac::function_code(c.s).request();
+    switch (request) {
+    case fdl::Request::fdl_status: return Answer::fdl_status;
+    case fdl::Request::ident:
+    case fdl::Request::lsap_status: return serve_ident(c);
+    case fdl::Request::sdn_low:
+    case fdl::Request::sdn_high:
+        if (dp_mode(c) && mac::has_dsap(c.s) && mac::dsap(c.s) == 58) global_control::serve(c);
+        return Answer::none;
+    case fdl::Request::sda_low:
+    case fdl::Request::sda_high: return Answer::rs;
+    case fdl::Request::srd_low:
+    case fdl::Request::srd_high:
+    case fdl::Request::msrd: break;
+    case fdl::Request::time_event: return Answer::none;
+    }
+    return c.s.retry != 0 ? repeat(c) : serve_request(c);
+}
+
+}  // namespace dpchip::chip::saps
