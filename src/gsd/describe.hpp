@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <dpchip/gsd/gsd.hpp>
 #include <dpchip/gsd/user_prm.hpp>
