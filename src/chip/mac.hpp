@@ -53,7 +53,8 @@ void deliver(C& c, const fdl::Telegram& t) {
     if (c.s.wd_state == WdState::baud_search) {
         if (t.sd == fdl::kSd3 && !c.traits->sd3_proves_baud) return;
         c.fact(Fact::proof, addresses(t), summary(t));
-        wd::dispatch(c, wd::Event::baud_detected);
+        timers::stop(c.s, Timer::watchdog);
+        timers::start(c.s, Timer::telegram, c.s.now + core::kClk);
         return;
     }
     if (!concerns(c.s, t)) return;

@@ -66,10 +66,14 @@ void cycle_over(C& c) {
 
 constexpr bool is_negative(Answer a) { return a == Answer::rs || a == Answer::rr; }
 
-/// t0 + 1 clk: the request takes effect and its answer is planned.
+/// t0 + 1 clk: the request takes effect and its answer is planned. A telegram that proves the baud rate is not answered.
 template <class C>
 void telegram(C& c) {
     timers::stop(c.s, Timer::telegram);
+    if (c.s.wd_state == WdState::baud_search) {
+        wd::dispatch(c, wd::Event::baud_detected);
+        return cycle_over(c);
+    }
     if (c.s.retry != 0) c.fact(Fact::retry, 0);
     const Answer answer = saps::serve(c);
     if (fdl::uses_frame_count(mac::function_code(c.s).request())) {

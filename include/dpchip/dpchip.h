@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * dpchip: PROFIBUS DP slave controllers as a software model. The C API.
+ *
+ * A chip is created, attached to a line and reached by single processor accesses, as firmware on silicon would reach it.
+ * A line is virtual ("sim:") or live (a pty, a serial port, a TCP port). Nothing happens behind the caller's back: there
+ * are no threads and no callbacks; chips and lines move only inside the calls below.
+ *
+ * Threads: one at a time per line and all that is attached to it. Different lines are independent.
+ * Errors: functions returning int give 0, or a negative DPCHIP_E_ code; functions returning a pointer give NULL. The words
+ * are in dpchip_last_error(), per thread. A null handle is DPCHIP_E_ARGUMENT, never a crash.
+ * Time: nanoseconds, or ticks of 1/60 ns, in which every bit time and the 48 MHz clock are whole numbers.
+ *
+ * Not modelled: what README.md lists.
+ */
+#ifndef DPCHIP_DPCHIP_H
+#define DPCHIP_DPCHIP_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "version.h"
+
+#if defined(DPCHIP_BUILDING_CAPI) && defined(__GNUC__)
+#define DPCHIP_API __attribute__((visibility("default")))
+#else
+#define DPCHIP_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct dpchip_chip dpchip_chip;
+typedef struct dpchip_line dpchip_line;
+
+/* Error codes. */
+enum {
+    DPCHIP_OK = 0,
+    DPCHIP_E_ARGUMENT = -1,  /* a null handle or pointer, a value out of range */
+    DPCHIP_E_NAME = -2,      /* no such option, chip or choice */
+    DPCHIP_E_STATE = -3,     /* not possible now: already attached, nothing attached, address taken */
+    DPCHIP_E_LINE = -4,      /* the port cannot be opened, or is gone */
+    DPCHIP_E_MEMORY = -5,    /* out of memory */
+    DPCHIP_E_SPACE = -6,     /* the caller's buffer is too small */
+    DPCHIP_E_SNAPSHOT = -7,  /* not a snapshot of this chip */
+    DPCHIP_E_FILE = -8,      /* a file cannot be written */
+    DPCHIP_E_INTERNAL = -9   /* a defect of the library */
+};
+
+/* Data format of the processor, pin XINT/MOT. */
+enum { DPCHIP_INTEL = 0, DPCHIP_MOTOROLA = 1 };
+
+/* DP_State, WD_State as in the Status Register; DPCHIP_NO_BAUD while searching; DPCHIP_NO_MASTER without an owner. */
+enum { DPCHIP_WAIT_PRM_STATE = 0, DPCHIP_WAIT_CFG_STATE = 1, DPCHIP_DATA_EXCH_STATE = 2 };
+enum { DPCHIP_BAUD_SEARCH_STATE = 0, DPCHIP_BAUD_CONTROL_STATE = 1, DPCHIP_DP_CONTROL_STATE = 2 };
+enum { DPCHIP_NO_BAUD = 15, DPCHIP_NO_MASTER = 255 };
+
+/* Words for the last error of this thread; "" when there was none. Valid until the next failing call of the thread. */
+DPCHIP_API const char *dpchip_last_error(void);
+/* "0.1.0": of the library, which may be newer than the header. */
+DPCHIP_API const char *dpchip_version(void);
+
+/* ---- chips ------------------------------------------------------------------------------------------------------ */
+
+/* A chip after a hardware reset: "vpc3+c", "vpc3+b", "vpc3+", "apc3" or "spc3". The caller destroys it. */
+DPCHIP_API dpchip_chip *dpchip_chip_create(const char *variant);
+/* Detaches the chip from its line first. NULL is allowed. */
+DPCHIP_API void dpchip_chip_destroy(dpchip_chip *chip);
+/* A pulse on RESET. Options and the attachment stay. */
+DPCHIP_API int dpchip_chip_reset(dpchip_chip *chip);
+
+/* One processor access, side effects included: reading 09H, 0BH, 0DH..11H, 13H and 14H acts. It takes the bus cycle time
+   (125 ns unless set otherwise), which moves the chip's line first, so firmware may wait in loops. Any address is legal;
+   a null chip reads FFH. */
+DPCHIP_API uint8_t dpchip_chip_read(dpchip_chip *chip, uint16_t address);
+DPCHIP_API void dpchip_chip_write(dpchip_chip *chip, uint16_t address, uint8_t value);
+/* What a read would deliver, without side effects and without taking time. */
+DPCHIP_API uint8_t dpchip_chip_peek(const dpchip_chip *chip, uint16_t address);
+/* 1 while X/INT is active, whatever its polarity. */
+DPCHIP_API int dpchip_chip_interrupt(const dpchip_chip *chip);
+
+/* Options by name, before or after attaching: "dpchip serve --show-options" lists them.
+   Example: "baud_probe_ms", "1" shortens the baud rate search. */
+DPCHIP_API int dpchip_chip_set_option(dpchip_chip *chip, const char *name, const char *text);
+DPCHIP_API int dpchip_chip_set_bus_mode(dpchip_chip *chip, int mode);
+/* How long one access takes; 0 .. 1000000 ns. */
+DPCHIP_API int dpchip_chip_set_access_time(dpchip_chip *chip, int64_t nanoseconds);
+/* Pin XCTS: 0 lets the chip send, 1 holds it back. */
+DPCHIP_API int dpchip_chip_set_xcts(dpchip_chip *chip, int level);
+
+/* What a test wants to know at a glance. Set `size` to sizeof(dpchip_chip_info) before the call; a library that knows more
+   fills only what fits. */
+typedef struct dpchip_chip_info {
+    size_t size;
+    int online;            /* 1 in Passive_Idle, 0 in Offline */
+    int dp_state;          /* DPCHIP_..._STATE */
+    int wd_state;
+    int baud_code;         /* as in the Status Register; DPCHIP_NO_BAUD */
+    int address;           /* station address; 255 in Offline */
+    int owner;             /* the parameterising master; DPCHIP_NO_MASTER */
+    uint32_t findings;     /* findings that wait for dpchip_chip_finding() */
+} dpchip_chip_info;
+DPCHIP_API int dpchip_chip_get_info(const dpchip_chip *chip, dpchip_chip_info *info);
+
+/* Takes the oldest finding (something the chip noticed and firmware should not have done) as a line of text.
+   1: one was taken; 0: there is none. */
+DPCHIP_API int dpchip_chip_finding(dpchip_chip *chip, char *text, size_t capacity);
+
+/* Snapshots: everything the chip knows, RAM included. Not its options, its line or its attachment. */
+DPCHIP_API size_t dpchip_chip_snapshot_size(const dpchip_chip *chip);
+/* The octets written, or a negative code. */
+DPCHIP_API int64_t dpchip_chip_save(const dpchip_chip *chip, void *bytes, size_t capacity);
+/* On error the chip is unchanged. Only for a chip that is on no line, or on a sim: line. */
+DPCHIP_API int dpchip_chip_load(dpchip_chip *chip, const void *bytes, size_t size);
+
+/* ---- lines ------------------------------------------------------------------------------------------------------ */
+
+/* "sim:" virtual time; "pty:/tmp/dp0" or "pty:" a new pty; "serial:/dev/ttyUSB0"; "tcp:127.0.0.1:9000".
+   baud in bit/s; 0: 19200 (on sim: 1500000). 45450 means 45.45 kbit/s. */
+DPCHIP_API dpchip_line *dpchip_line_open(const char *uri, uint32_t baud);
+/* Detaches every chip first. NULL is allowed. */
+DPCHIP_API void dpchip_line_close(dpchip_line *line);
+/* What a master opens: the path of a pty, a device, HOST:PORT; "" on sim:. Valid as long as the line. */
+DPCHIP_API const char *dpchip_line_path(const dpchip_line *line);
+/* A chip is on one line at a time. Several chips may share a line. */
+DPCHIP_API int dpchip_line_attach(dpchip_line *line, dpchip_chip *chip);
+DPCHIP_API int dpchip_line_detach(dpchip_line *line, dpchip_chip *chip);
+
+/* Lets time pass: virtual time on sim:, wall time on a live line. Returns the time spent, or a negative code. Returns early,
+   at once if need be, when the X/INT of an attached chip has gone active since the last dpchip_line_run returned, also
+   during accesses, send and receive. An X/INT that merely stays active does not end it. */
+DPCHIP_API int64_t dpchip_line_run(dpchip_line *line, int64_t nanoseconds);
+DPCHIP_API int64_t dpchip_line_run_ticks(dpchip_line *line, int64_t ticks);
+/* Line time in ticks of 1/60 ns. */
+DPCHIP_API int64_t dpchip_line_now_ticks(const dpchip_line *line);
+/* When something happens next; INT64_MAX: nothing is planned. */
+DPCHIP_API int64_t dpchip_line_next_ticks(dpchip_line *line);
+/* Ends a dpchip_line_run on a live line, the present one or the next. The only call that a signal handler may make. */
+DPCHIP_API void dpchip_line_stop(dpchip_line *line);
+
+/* The test plays the master; sim: only. Sends octets (a good telegram or not; 1..255) at the earliest moment the bus rules
+   allow and returns when the last stop bit has passed. */
+DPCHIP_API int dpchip_line_send(dpchip_line *line, const void *bytes, size_t n);
+/* Runs the line until a station's telegram has ended: its length, copied as far as it fits. 0: the time is over. */
+DPCHIP_API int dpchip_line_receive(dpchip_line *line, void *bytes, size_t capacity, int64_t timeout_ns);
+
+/* Records all telegrams from now on into a pcapng file that Wireshark opens; NULL ends the recording. */
+DPCHIP_API int dpchip_line_record(dpchip_line *line, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
