@@ -34,9 +34,16 @@ inline constexpr std::int64_t kTicksPerSecond = kTicksPerNs * 1'000'000'000;
 /// Later than everything: the deadline of a timer that does not run.
 inline constexpr Ticks kNever{std::numeric_limits<std::int64_t>::max()};
 
+namespace detail {
+// Neither is defined: constant evaluation that comes to one of them stops with its name. A throw would do, too, but
+// firmware compiles this without exceptions.
+void not_a_whole_number_of_ticks();
+void only_decimal_digits_in_a_time();
+}  // namespace detail
+
 /// `num/den` seconds. Does not compile when that is not a whole number of ticks.
 consteval Ticks exact(std::int64_t num, std::int64_t den) {
-    if (den <= 0 || (kTicksPerSecond * num) % den != 0) throw "not a whole number of ticks";
+    if (den <= 0 || (kTicksPerSecond * num) % den != 0) detail::not_a_whole_number_of_ticks();
     return {kTicksPerSecond * num / den};
 }
 
@@ -62,11 +69,11 @@ consteval Ticks parse(const char* text, std::int64_t unit) {
     for (; *text != '\0'; ++text) {
         if (*text == '\'') continue;
         if (*text == '.') { point = true; continue; }
-        if (*text < '0' || *text > '9') throw "only decimal digits in a time";
+        if (*text < '0' || *text > '9') only_decimal_digits_in_a_time();
         if (point) { fraction = fraction * 10 + (*text - '0'); scale *= 10; }
         else whole = whole * 10 + (*text - '0');
     }
-    if ((fraction * unit) % scale != 0) throw "not a whole number of ticks";
+    if ((fraction * unit) % scale != 0) not_a_whole_number_of_ticks();
     return {whole * unit + fraction * unit / scale};
 }
 }  // namespace detail
