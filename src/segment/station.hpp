@@ -3,6 +3,9 @@
 //
 // Times are line time. A station owns its own state and is driven from outside: the segment asks next(), moves it
 // with advance(), lets it hear what others sent and takes what it wants to send. A station never calls anybody.
+//
+// Optional: `void sent(Ticks at)`. What take() gave has left the line at `at` already, before its end(): a live line's
+// medium may be faster than the bit time of its rate. Stations that time their own sending need it to be on a live line.
 #pragma once
 
 #include <concepts>
@@ -59,6 +62,7 @@ public:
     bool take(Transmission& t) const { return table_->take(object_, t); }
     bool hears_all() const { return table_->hears_all(object_); }
     std::uint8_t address() const { return table_->address(object_); }
+    void sent(Ticks at) const { table_->sent(object_, at); }
     const void* object() const { return object_; }
 
 private:
@@ -71,6 +75,7 @@ private:
         bool (*take)(void*, Transmission&);
         bool (*hears_all)(const void*);
         std::uint8_t (*address)(const void*);
+        void (*sent)(void*, Ticks);
     };
 
     template <class S>
@@ -83,6 +88,9 @@ private:
         [](void* o, Transmission& t) { return static_cast<S*>(o)->take(t); },
         [](const void* o) { return static_cast<const S*>(o)->hears_all(); },
         [](const void* o) { return static_cast<const S*>(o)->address(); },
+        [](void* o, Ticks t) {
+            if constexpr (requires(S& s) { s.sent(t); }) static_cast<S*>(o)->sent(t);
+        },
     };
 
     void* object_ = nullptr;

@@ -91,7 +91,7 @@ public:
     explicit Bits(const Octets& octets) {
         for (const std::uint8_t o : octets) {
             const unsigned parity = even_parity(o) ? 1u : 0u;
-            words_.push_back(static_cast<std::uint16_t>(o << 1 | parity << 9 | 1u << 10));
+            words_.push_back(static_cast<std::uint16_t>(unsigned{o} << 1 | parity << 9 | 1u << 10));
         }
     }
     void flip(std::size_t bit) { words_[bit / 11] = static_cast<std::uint16_t>(words_[bit / 11] ^ (1u << (bit % 11))); }

@@ -153,7 +153,7 @@ TEST(Receiver, needs_no_idle_time_between_good_telegrams) {
     EXPECT_TRUE(line.send(kStatus));
     EXPECT_TRUE(line.send(kDiagnosis));
     line.idle(11);
-    EXPECT_TRUE(line.send({0xE5}));
+    EXPECT_TRUE(line.send(std::uint8_t{0xE5}));
     EXPECT_TRUE(line.send({0xDC, 2, 2}));
 }
 
