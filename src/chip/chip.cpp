@@ -144,6 +144,12 @@ bool Chip<Trace>::take(fdl::Transmission& t) {
 }
 
 template <class Trace>
+void Chip<Trace>::sent(Ticks at) {
+    if (transmitter::sending(c_.s)) timers::start(c_.s, Timer::answer_end, std::max(at, c_.s.now));
+    c_.s.next = ms::next(c_.s);
+}
+
+template <class Trace>
 bool Chip<Trace>::hears_all() const {
     return c_.s.passive_idle != 0 && (c_.s.wd_state == WdState::baud_search || c_.s.rx_state == RxState::unsync);
 }

@@ -66,6 +66,8 @@ public:
     void carrier(Ticks at);
     /// True, and `t` filled, when an answer starts now.
     bool take(fdl::Transmission& t);
+    /// What take() gave has left the line at `at`, before its bit times are over: sending ends then (live lines).
+    void sent(Ticks at);
     /// True while searching the baud rate or out of synchronisation.
     bool hears_all() const;
     /// R_TS_Adr as latched at Start or changed by Set_Slave_Add; 255 while Offline.
