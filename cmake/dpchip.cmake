@@ -85,6 +85,7 @@ function(dpchip_c_library)
 
   foreach(library IN ITEMS capi capi_static)
     dpchip_options(dpchip_${library})
+    target_compile_definitions(dpchip_${library} PRIVATE DPCHIP_BUILDING_CAPI)
     add_library(dpchip::${library} ALIAS dpchip_${library})
     set_target_properties(dpchip_${library} PROPERTIES OUTPUT_NAME dpchip EXPORT_NAME ${library}
                           CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
@@ -120,6 +121,9 @@ endfunction()
 # With DPCHIP_FUZZ it is a libFuzzer program; without, a program that replays fuzz/corpus/name once, as a test.
 function(dpchip_fuzz name)
   cmake_parse_arguments(arg "" "" "DEPS;LIBS" ${ARGN})
+  if(NOT EXISTS ${PROJECT_SOURCE_DIR}/fuzz/fuzz_${name}.cpp)
+    return()
+  endif()
   set(corpus ${PROJECT_SOURCE_DIR}/fuzz/corpus/${name})
   add_executable(fuzz_${name} ${PROJECT_SOURCE_DIR}/fuzz/fuzz_${name}.cpp)
   dpchip_options(fuzz_${name})
