@@ -52,6 +52,12 @@ void store(C& c, Service service, std::span<const std::uint8_t> data) {
     dpram::write(c, dpram::pointer(c.s, pointer_cell(selected(c, service))), data);
 }
 
+/// Reception: the data reach a free Aux-Buffer whatever becomes of the telegram; one that waits there is not disturbed.
+template <class C>
+void receive(C& c, Service service, std::span<const std::uint8_t> data) {
+    if (waiting(c, service) == AuxUser::none) store(c, service, data);
+}
+
 /// Swaps the Aux pointer and the target pointer and stores the received length.
 template <class C>
 void exchange(C& c, Service service, std::uint8_t length) {

@@ -273,12 +273,23 @@ std::uint16_t checked(C& c, std::uint16_t address) {
     return folded;
 }
 
+/// An event that a processor access causes is older than the next access: an IAR write may clear it.
+template <class C, class Access>
+auto access(C& c, Access&& act) {
+    const std::uint16_t arriving = irq::arriving(c.s);
+    struct Forget {
+        State& s;
+        std::uint16_t kept;
+        ~Forget() { s.irr_fresh &= kept; }
+    } const forget{c.s, arriving};
+    return act();
+}
+
 template <class C>
 std::uint8_t read(C& c, std::uint16_t bus_address) {
     const std::uint16_t a = checked(c, decoded(c.s, *c.traits, bus_address));
-    const std::uint8_t value = a < regmap::control::count
-                                   ? read_register(c, regmap::effect(c.traits->variant, Dir::read, a), a)
-                                   : c.s.ram[a];
+    const auto read_control = [&] { return read_register(c, regmap::effect(c.traits->variant, Dir::read, a), a); };
+    const std::uint8_t value = a < regmap::control::count ? access(c, read_control) : c.s.ram[a];
     c.fact(Fact::cpu_read, a, value);
     return value;
 }
@@ -287,7 +298,8 @@ template <class C>
 void write(C& c, std::uint16_t bus_address, std::uint8_t value) {
     const std::uint16_t a = checked(c, decoded(c.s, *c.traits, bus_address));
     c.fact(Fact::cpu_write, a, value);
-    if (a < regmap::control::count) write_register(c, regmap::effect(c.traits->variant, Dir::write, a), a, value);
+    const auto write_control = [&] { write_register(c, regmap::effect(c.traits->variant, Dir::write, a), a, value); };
+    if (a < regmap::control::count) access(c, write_control);
     else c.s.ram[a] = value;
 }
 

@@ -52,14 +52,17 @@ void clear(C& c, std::uint16_t events) {
     set_irr(c, static_cast<std::uint16_t>(c.s.irr & ~events));
 }
 
+/// Events that may still meet an acknowledgement in their own CLK period.
+constexpr std::uint16_t arriving(const State& s) {
+    return clk_period(s.irr_fresh_at) == clk_period(s.now) ? s.irr_fresh : std::uint16_t{0};
+}
+
 /// IAR: a 1 clears, except where only the state machines may, and except an event that arrives at the same time.
 template <class C>
 void acknowledge(C& c, std::uint16_t events) {
     const auto guarded = static_cast<std::uint16_t>(events & c.s.irr & regmap::interrupt::by_acknowledgement);
     if (guarded != 0) c.find(Rule::iar_protected, guarded);
-    const bool same_clk = clk_period(c.s.irr_fresh_at) == clk_period(c.s.now);
-    const auto arriving = static_cast<std::uint16_t>(same_clk ? c.s.irr_fresh : 0u);
-    clear(c, static_cast<std::uint16_t>(events & ~regmap::interrupt::by_acknowledgement & ~arriving));
+    clear(c, static_cast<std::uint16_t>(events & ~regmap::interrupt::by_acknowledgement & ~arriving(c.s)));
 }
 
 /// Once the processor has read IRR or IR, an acknowledgement refers to what it saw.

@@ -11,6 +11,7 @@ template <class C>
 Answer serve(C& c) {
     const auto d = mac::data(c.s);
     if (d.size() > aux::limit(c, aux::Service::cfg)) return Answer::rr;
+    aux::receive(c, aux::Service::cfg, d);
     if (c.s.dp_state == DpState::wait_prm || !dp::is_owner(c.s, mac::master(c.s))) return Answer::sc;
     const AuxUser occupant = aux::waiting(c, aux::Service::cfg);
     if (occupant == AuxUser::prm || occupant == AuxUser::ext_prm) return Answer::rr;

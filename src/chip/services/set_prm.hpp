@@ -86,10 +86,9 @@ void take(C& c, Data d) {
 template <class C>
 bool special_buffer(const C& c) { return (c.s.mode0 & regmap::mode0::spec_prm_buf_mode) != 0; }
 
-/// Spec_Prm_Buf_Mode: straight into the Prm-Buffer, nothing is exchanged.
+/// Spec_Prm_Buf_Mode: the data are in the Prm-Buffer already, nothing is exchanged.
 template <class C>
 void present_directly(C& c, Data d) {
-    dpram::write(c, dpram::pointer(c.s, regmap::org::r_prm_buf_ptr), d);
     dpram::set_cell(c.s, regmap::org::r_len_prm_data, static_cast<std::uint8_t>(d.size()));
     c.s.prm_present = AuxUser::prm;
     aux::set_counter(c, Fact::prm_counter, c.s.prm_counter, 1);
@@ -148,11 +147,18 @@ bool buffer_free(const C& c) {
 }
 
 template <class C>
+void receive(C& c, Data d) {
+    if (!special_buffer(c)) aux::receive(c, aux::Service::prm, d);
+    else if (c.s.prm_counter == 0) dpram::write(c, dpram::pointer(c.s, regmap::org::r_prm_buf_ptr), d);
+}
+
+template <class C>
 Answer serve(C& c) {
     const Data d = mac::data(c.s);
     const std::uint8_t limit =
         special_buffer(c) ? dpram::cell(c.s, regmap::org::r_len_spec_prm_buf) : aux::limit(c, aux::Service::prm);
     if (d.size() > limit) return Answer::rr;
+    receive(c, d);
     if (ignored(c, d)) return Answer::sc;
     if (!buffer_free(c)) return Answer::rr;
     evaluate(c, d);

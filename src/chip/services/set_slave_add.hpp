@@ -23,11 +23,11 @@ Answer serve(C& c) {
     const auto d = mac::data(c.s);
     if (dpram::pointer(c.s, regmap::org::r_ssa_buf_ptr) == 0) return Answer::rs;
     if (d.size() > aux::limit(c, aux::Service::ssa)) return Answer::rr;
+    aux::receive(c, aux::Service::ssa, d);
     if (c.s.dp_state != DpState::wait_prm) return Answer::sc;
     if (c.s.ssa_busy != 0) return Answer::rr;
     if (!acceptable(c, d)) return Answer::sc;
     const std::uint8_t address = d[0], no_add_chg = d[3];
-    aux::store(c, aux::Service::ssa, d);
     aux::exchange(c, aux::Service::ssa, static_cast<std::uint8_t>(d.size()));
     dpram::set_cell(c.s, regmap::org::r_real_no_add_change, no_add_chg != 0 ? kTrue : std::uint8_t{0});
     c.s.ssa_busy = 1;
