@@ -45,7 +45,7 @@ enum class GcInt : std::uint8_t {
 
 /// Which Aux-Buffer receives what (R_Aux_Buf_Sel).
 enum class AuxUse : std::uint8_t {
-    prm_on_1,  ///< Set_Prm by Aux 1, Chk_Cfg and Set_Slave_Add by Aux 2
+    apart,     ///< Set_Prm by Aux 1, Chk_Cfg and Set_Slave_Add by Aux 2; on a VPC3+B as prm_on_2
     prm_on_2,  ///< Set_Prm by Aux 2, the others by Aux 1
     all_on_1,  ///< no Aux 2: every control buffer is as long as the longest
 };
@@ -97,7 +97,7 @@ struct Config {
     bool check_gc_reserved = true;
     bool dis_start_control = false;          ///< until Set_Prm says otherwise
     bool dis_stop_control = false;
-    AuxUse aux = AuxUse::prm_on_1;
+    AuxUse aux = AuxUse::apart;
 
     std::uint16_t user_watchdog = 0;         ///< Data_Exchange telegrams without a poll() until the chip leaves its master; 0: off
     std::uint8_t min_tsdr = 11;              ///< bit times

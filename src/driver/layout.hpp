@@ -111,7 +111,7 @@ constexpr void size_control_buffers(const Config& c, Layout& l) {
         l.aux_octets = {all, 0};
         l.prm_octets = all;
     } else {
-        const bool prm_first = c.aux == AuxUse::prm_on_1;
+        const bool prm_first = c.aux == AuxUse::apart && !regmap::traits(c.variant).chk_cfg_aux1;
         l.aux_sel = prm_first ? sel::chk_cfg | sel::set_slave_adr : sel::set_prm;
         l.aux_octets = prm_first ? std::array{c.max_prm, rest} : std::array{rest, c.max_prm};
         l.prm_octets = c.max_prm;

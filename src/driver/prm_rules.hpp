@@ -19,16 +19,27 @@ struct PrmConstant {
     std::uint8_t value{};
 };
 
+/// A range of values, ends included.
+struct PrmRange {
+    std::int64_t min{};
+    std::int64_t max{};
+};
+
 /// A parameter: 1, 2 or 4 octets, most significant first; or `width` bits from bit `bit` on in one octet.
 struct PrmValue {
     std::uint8_t offset{};
     std::uint8_t octets{1};
     bool is_signed{};
     std::uint8_t bit{};
-    std::uint8_t width{};     ///< 0: all bits of the octets
+    std::uint8_t width{};  ///< 0: all bits of the octets
     std::int64_t min{};
     std::int64_t max{};
-    std::span<const std::int64_t> values{};  ///< when not empty, the only values there are; min and max do not count
+    std::span<const PrmRange> ranges{};  ///< when not empty, the value must lie in one of them; min and max do not count
+
+    constexpr bool allows(std::int64_t value) const {
+        if (ranges.empty()) return value >= min && value <= max;
+        return std::ranges::any_of(ranges, [=](const PrmRange& r) { return value >= r.min && value <= r.max; });
+    }
 };
 
 /// The views must outlive the driver.
@@ -44,7 +55,7 @@ enum class PrmFault : std::uint8_t {
     none,
     length,        ///< User_Prm_Data too short or too long
     constant,      ///< an octet that must not change is different
-    out_of_range,  ///< a value outside its range, or none of its values
+    out_of_range,  ///< a value outside its ranges
 };
 
 /// The value of a parameter; `user_prm` must be long enough.
@@ -69,9 +80,7 @@ constexpr PrmFault check(const PrmRules& rules, std::span<const std::uint8_t> us
         if (c.offset < user_prm.size() && ((user_prm[c.offset] ^ c.value) & c.mask) != 0) return PrmFault::constant;
     for (const PrmValue& v : rules.values) {
         if (std::size_t{v.offset} + v.octets > user_prm.size()) continue;
-        const std::int64_t value = prm_value(v, user_prm);
-        if (v.values.empty() ? value < v.min || value > v.max : std::ranges::find(v.values, value) == v.values.end())
-            return PrmFault::out_of_range;
+        if (!v.allows(prm_value(v, user_prm))) return PrmFault::out_of_range;
     }
     return PrmFault::none;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PrmRules: lengths, constants, ranges, signs, bit fields and lists of values.
+// PrmRules: lengths, constants, ranges, signs and bit fields.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -53,12 +53,14 @@ TEST(PrmRules, RangesIncludeTheirEnds) {
     EXPECT_EQ(check(rules, Octets{0x01}), PrmFault::none) << "not sent: the length decides";
 }
 
-TEST(PrmRules, AListOfValuesReplacesTheRange) {
-    static constexpr std::int64_t list[]{0, 2, 7};
-    static constexpr PrmValue values[]{{.offset = 0, .octets = 1, .bit = 4, .width = 4, .values = list}};
+TEST(PrmRules, SeveralRangesReplaceTheOne) {
+    static constexpr PrmRange list[]{{0, 0}, {2, 2}, {5, 7}};
+    static constexpr PrmValue values[]{{.offset = 0, .octets = 1, .bit = 4, .width = 4, .ranges = list}};
     const PrmRules rules{0, 10, {}, values};
     EXPECT_EQ(check(rules, Octets{0x2F}), PrmFault::none);
     EXPECT_EQ(check(rules, Octets{0x7F}), PrmFault::none);
+    EXPECT_EQ(check(rules, Octets{0x6F}), PrmFault::none);
+    EXPECT_EQ(check(rules, Octets{0x4F}), PrmFault::out_of_range);
     EXPECT_EQ(check(rules, Octets{0x1F}), PrmFault::out_of_range);
 }
 

@@ -322,6 +322,7 @@ TEST_F(Driver, JudgesNoMoreThanAFewConflictsInOneCall) {
     EXPECT_LE(acknowledgements().size(), 4u);
 }
 
+// proves: VPC3C 6.2.3-01
 TEST_F(Driver, ChkCfgMustEqualThePluggedModules) {
     bring_up(station());
     chip.value[0x04] = 0x11;
