@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Conformance checks of layers 1 and 2: C001 to C018 (reference 8.3).
+#include "checks.hpp"
+
+#include <vector>
+
+namespace dpchip::checks {
+namespace {
+
+/// Reads the chip's pin edges out of its queue.
+std::vector<chip::Edge> edges_of(Bench& bench, chip::Pin pin) {
+    std::vector<chip::Edge> out;
+    while (!bench.chip().edges().empty())
+        if (const chip::Edge e = bench.chip().edges().pop(); e.pin == pin) out.push_back(e);
+    return out;
+}
+
+void watch(Bench& bench, chip::Pin pin) {
+    bench.chip().watch(static_cast<std::uint8_t>(1u << static_cast<unsigned>(pin)));
+}
+
+// proves: VPC3C 2.1-05, VPC3C 6.1-01, APC3 1-01, APC3 5.1-01
+TEST_P(Checks, C001_a_status_request_is_answered_and_sets_no_interrupt) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("10 08 02 49 53 16"), "10 02 08 00 0A 16");
+    EXPECT_EQ(b.irr(), 0);
+}
+
+// proves: VPC3C 1-02
+TEST_P(Checks, C002_a_wrong_FCS_is_met_with_silence_and_the_next_good_telegram_is_answered) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("10 08 02 49 52 16"), kSilence);
+    EXPECT_EQ(b.ask("10 08 02 49 53 16"), "10 02 08 00 0A 16");
+}
+
+// proves: VPC3C 1-02
+TEST_P(Checks, C003_differing_lengths_are_met_with_silence) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("68 05 04 68 88 82 6D 3C 3E F1 16"), kSilence);
+    EXPECT_EQ(b.ask(kFdlStatus), kFdlStatusOk);
+}
+
+// proves: VPC3C 1-02
+TEST_P(Checks, C004_a_wrong_end_delimiter_is_met_with_silence) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("68 05 05 68 88 82 6D 3C 3E F1 17"), kSilence);
+    EXPECT_EQ(b.ask(kFdlStatus), kFdlStatusOk);
+}
+
+// proves: VPC3C 1-02, VPC3C 2.1-02
+TEST_P(Checks, C005_a_parity_error_is_met_with_silence) {
+    Bench b{recipe(), Stage::p0};
+    b.tell({hex("10 08 02 49 53 16"), {{3, fdl::fault_parity}}, {}});
+    EXPECT_EQ(b.listen_text(), kSilence);
+    EXPECT_EQ(b.ask(kFdlStatus), kFdlStatusOk);
+}
+
+// proves: VPC3C 5.1.1-17..18, VPC3C 8.3-04
+TEST_P(Checks, C006_a_low_stop_bit_matters_unless_Dis_Stop_Control_is_set) {
+    for (const bool disabled : {false, true}) {
+        Recipe s = recipe();
+        if (disabled) s.mode0 |= regmap::mode0::dis_stop_control;
+        Bench b{s, Stage::p0};
+        b.tell({hex("10 08 02 49 53 16"), {{2, fdl::fault_stop}}, {}});
+        EXPECT_EQ(b.listen_text(), disabled ? kFdlStatusOk : kSilence);
+        EXPECT_EQ(b.ask(kFdlStatus), kFdlStatusOk);
+    }
+}
+
+// proves: VPC3C 5.1.1-20..21, VPC3C 8.3-04
+TEST_P(Checks, C007_a_gap_of_three_bit_times_matters_unless_Dis_Start_Control_is_set) {
+    for (const bool disabled : {false, true}) {
+        Recipe s = recipe();
+        if (disabled) s.mode0 |= regmap::mode0::dis_start_control;
+        Bench b{s, Stage::p0};
+        b.tell({hex("10 08 02 49 53 16"), {}, {{2, 3}}});
+        EXPECT_EQ(b.listen_text(), disabled ? kFdlStatusOk : kSilence);
+        EXPECT_EQ(b.ask(kFdlStatus), kFdlStatusOk);
+    }
+}
+
+// proves: VPC3C 2.1-16, VPC3C 2.1-17, VPC3C 8.3-03
+TEST_P(Checks, C008_answers_start_on_time_at_every_baud_rate_and_RTS_encloses_them) {
+    for (const fdl::Baud& baud : fdl::kBaud) {
+        SCOPED_TRACE(baud.name);
+        Recipe s = recipe();
+        s.baud = baud.code;
+        Bench b{s, Stage::p0};
+        EXPECT_EQ(b.peek(control::status_reg_high) & 0x0F, static_cast<int>(baud.code));
+        watch(b, chip::Pin::rts);
+        EXPECT_EQ(b.ask("10 08 02 49 53 16"), "10 02 08 00 0A 16");
+        const std::int64_t delay = baud.code == BaudCode::mbit_12 ? 36 : baud.code == BaudCode::mbit_6 ? 18 : 11;
+        EXPECT_EQ(b.last_answer().start - b.request_end(), b.bits(delay));
+        const std::vector<chip::Edge> rts = edges_of(b, chip::Pin::rts);
+        ASSERT_EQ(rts.size(), 2u);
+        EXPECT_EQ(rts[0], (chip::Edge{b.last_answer().start - 4_clk, chip::Pin::rts, chip::Level::high}));
+        EXPECT_EQ(rts[1], (chip::Edge{b.last_answer().end + 4_clk, chip::Pin::rts, chip::Level::low}));
+    }
+}
+
+// proves: VPC3C 4.2-33, APC3 3.2-26
+TEST_P(Checks, C009_register_0B_sets_the_delay_of_answers) {
+    Recipe s = recipe();
+    s.min_tsdr = 0x14;
+    Bench b{s, Stage::p0};
+    EXPECT_EQ(b.ask("10 08 02 49 53 16"), "10 02 08 00 0A 16");
+    EXPECT_EQ(b.last_answer().start - b.request_end(), 640_clk);
+}
+
+TEST_P(Checks, C010_a_token_is_ignored) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("DC 05 02"), kSilence);
+    EXPECT_EQ(b.ask("10 08 02 49 53 16"), "10 02 08 00 0A 16");
+}
+
+TEST_P(Checks, C011_an_ident_request_is_answered_RS) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("10 08 02 4E 58 16"), "10 02 08 03 0D 16");
+}
+
+TEST_P(Checks, C012_a_broadcast_that_wants_an_answer_gets_none) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("10 7F 02 49 CA 16"), kSilence);
+    EXPECT_EQ(b.ask("68 05 05 68 FF 82 6D 3C 3E 68 16"), kSilence);
+}
+
+TEST_P(Checks, C013_SDA_to_SAP_61_is_answered_RS) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("68 0C 0C 68 88 82 55 3D 3E 80 01 01 0B 47 11 00 BF 16"), "10 02 08 03 0D 16");
+    EXPECT_EQ(b.irr(), 0);
+    EXPECT_EQ(b.dp_state(), kWaitPrm);
+}
+
+TEST_P(Checks, C014_SDN_to_SAP_61_changes_nothing) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("68 0C 0C 68 88 82 44 3D 3E 80 01 01 0B 47 11 00 AE 16"), kSilence);
+    EXPECT_EQ(b.irr(), 0);
+    EXPECT_EQ(b.dp_state(), kWaitPrm);
+    EXPECT_EQ(b.diag(), kDiagWaitPrm);
+}
+
+TEST_P(Checks, C015_SAP_52_does_not_exist) {
+    Bench b{recipe(), Stage::p0};
+    EXPECT_EQ(b.ask("68 06 06 68 88 82 7D 34 3E 01 FA 16"), "10 02 08 03 0D 16");
+}
+
+TEST_P(Checks, C016_XCTS_holds_the_first_character_back_but_not_RTS) {
+    Bench b{recipe(), Stage::p0};
+    watch(b, chip::Pin::rts);
+    b.chip().set_xcts(chip::Level::high);
+    b.tell(kFdlStatus);
+    b.run_to(b.request_end() + 100_us);
+    const std::vector<chip::Edge> rts = edges_of(b, chip::Pin::rts);
+    ASSERT_EQ(rts.size(), 1u);
+    EXPECT_EQ(rts[0], (chip::Edge{b.request_end() + b.bits(11) - 4_clk, chip::Pin::rts, chip::Level::high}));
+    const Ticks released = b.now();
+    b.chip().set_xcts(chip::Level::low);
+    EXPECT_EQ(b.listen_text(), "10 02 08 00 0A 16");
+    EXPECT_GE(b.last_answer().start, released);
+    EXPECT_LE(b.last_answer().start, released + b.bit());
+}
+
+TEST_P(Checks, C017_a_retry_is_answered_again_and_indicated_once) {
+    Bench b{recipe(), Stage::p2};
+    const unsigned user_wd = b.chip().user_wd_timer();
+    EXPECT_EQ(b.ask_verbatim("68 05 05 68 08 02 5D 12 34 AD 16"), "68 05 05 68 02 08 08 AB CD 8A 16");
+    EXPECT_EQ(b.irr(), irq::dx_out);
+    EXPECT_EQ(b.chip().user_wd_timer(), user_wd - 1);
+    const std::uint8_t dout_sm = b.peek(control::dout_buffer_sm);
+    b.acknowledge();
+    EXPECT_EQ(b.ask_verbatim("68 05 05 68 08 02 5D 12 34 AD 16"), "68 05 05 68 02 08 08 AB CD 8A 16");
+    EXPECT_EQ(b.irr(), 0);
+    EXPECT_EQ(b.chip().user_wd_timer(), user_wd - 1);
+    EXPECT_EQ(b.peek(control::dout_buffer_sm), dout_sm);
+}
+
+TEST_P(Checks, C018_a_request_of_another_master_in_between_makes_the_same_octets_a_new_request) {
+    Bench b{recipe(), Stage::p2};
+    EXPECT_EQ(b.ask_verbatim("68 05 05 68 08 02 5D 12 34 AD 16"), kInputs);
+    EXPECT_EQ(b.irr(), irq::dx_out);
+    b.acknowledge();
+    EXPECT_EQ(b.ask_verbatim("68 05 05 68 88 83 6D 3C 3E F2 16"), "68 0B 0B 68 83 88 08 3E 3C 00 0C 00 02 47 11 F3 16");
+    EXPECT_EQ(b.irr(), 0);
+    EXPECT_EQ(b.ask_verbatim("68 05 05 68 08 02 5D 12 34 AD 16"), kInputs);
+    EXPECT_EQ(b.irr(), irq::dx_out);
+}
+
+}  // namespace
+}  // namespace dpchip::checks
