@@ -66,6 +66,7 @@ std::optional<std::int64_t> Parser::number(Statement& s, const char* what, std::
         if (t != nullptr && t->kind == Token::Kind::string) n = to_number(trim(t->text));
         if (!n) {
             error(at, std::string{what} + ": number expected" + (t != nullptr ? ", not " + quoted(t->text) : ""));
+            while (!s.value.end()) s.value.skip();
             return std::nullopt;
         }
         warn(at, std::string{what} + ": number in quotes");
@@ -238,9 +239,9 @@ Statement Parser::split(const Line& line) {
         Cursor inside{tokens.subspan(open + 1, at - open - 1)};
         s.index = inside.number();
         if (s.index && inside.accept('-')) s.index2 = inside.number();
-        if (!s.index || !inside.end()) error(tokens[open].at, s.name + ": number in parentheses expected");
+        if (at == tokens.size()) error(tokens[open].at, s.name + ": ')' is missing");
+        else if (!s.index || !inside.end()) error(tokens[open].at, s.name + ": number in parentheses expected");
         if (at < tokens.size()) ++at;
-        else error(tokens[open].at, s.name + ": ')' is missing");
     }
     if (at < tokens.size() && tokens[at].is('=')) {
         s.assigns = true;
@@ -270,7 +271,8 @@ void Parser::line(const Line& line) {
 void Parser::statement(Statement& s) {
     if (const Handler h = handler(s.key)) return (this->*h)(s);
     if (const auto target = scalar_target(gsd_, s.key)) return scalar(s, *target);
-    if (!s.assigns && !is_standard_keyword(s.key)) warn(s.at, quoted(s.name) + " is no keyword of the standard and has no value");
+    // A word alone may begin or end a block of the vendor's own.
+    if (!s.assigns && !s.rest.empty()) warn(s.at, quoted(s.name) + " is no keyword that is known, and '=' is missing");
     keep(s);
 }
 
