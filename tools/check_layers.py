@@ -48,7 +48,8 @@ STANDARD = set(
 )
 
 CLOCKS_AND_THREADS = set(
-    "barrier chrono condition_variable coroutine ctime future latch mutex random semaphore shared_mutex stop_token thread".split()
+    """barrier chrono condition_variable coroutine ctime future latch mutex random semaphore shared_mutex stop_token
+    thread""".split()
 )
 INPUT_AND_OUTPUT = set("cstdio filesystem fstream iostream stdio.h syncstream".split())
 HEAP = set(

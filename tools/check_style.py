@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What no compiler and no clang-tidy check sees: licence lines, file lengths, tabs, paths of one machine, silenced tests.
+"""What no compiler and no clang-tidy check sees: licence lines, file lengths, tabs, machine paths, silenced tests.
 
 Usage: check_style.py [ROOT]. Looks at the files git tracks, and at new ones it does not ignore.
 Prints one line per breach and exits with 1 when there is one.

@@ -22,14 +22,16 @@ OURS = ("src", "tests", "fuzz", "bench", "examples")
 def sources(build):
     commands = json.loads((build / "compile_commands.json").read_text())
     files = {Path(entry["directory"], entry["file"]).resolve() for entry in commands}
-    return sorted(f for f in files if f.suffix == ".cpp" and f.is_relative_to(ROOT) and f.relative_to(ROOT).parts[0] in OURS)
+    ours = (f for f in files if f.suffix == ".cpp" and f.is_file() and f.is_relative_to(ROOT))
+    return sorted(f for f in ours if f.relative_to(ROOT).parts[0] in OURS)
 
 
 def headers_digest():
     """One digest of everything any file may depend on: a changed header makes every file stale."""
     digest = hashlib.sha256()
     folders = [ROOT / "include", *(ROOT / folder for folder in OURS)]
-    files = [f for folder in folders for f in folder.rglob("*") if f.suffix in {".hpp", ".h", ".inc"} or f.name == ".clang-tidy"]
+    everything = (f for folder in folders for f in folder.rglob("*"))
+    files = [f for f in everything if f.suffix in {".hpp", ".h", ".inc"} or f.name == ".clang-tidy"]
     for file in sorted([*files, ROOT / ".clang-tidy"]):
         digest.update(file.read_bytes())
     return digest.hexdigest()
