@@ -99,6 +99,7 @@ public:
     /// Options may change at any time; they hold from the next event on.
     Options& options() { return c_.options; }
     core::FixedQueue<core::Finding, 64>& findings() { return c_.findings; }
+    const core::FixedQueue<core::Finding, 64>& findings() const { return c_.findings; }
     Trace& trace() { return c_.trace; }
 
     // ---- snapshots --------------------------------------------------------------------------------------------

@@ -61,7 +61,8 @@ template <class C>
 void cycle_over(C& c) {
     set_slave_add::address_becomes_valid(c);
     data_exchange::after_answer(c);
-    if (c.s.offline_requested != 0) go_offline(c);
+    // The answer's own buffer may have been the one beyond the RAM.
+    if (c.s.offline_requested != 0 || c.s.ram_access_violation != 0) go_offline(c);
 }
 
 constexpr bool is_negative(Answer a) { return a == Answer::rs || a == Answer::rr; }

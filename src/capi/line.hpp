@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands behind a dpchip_line: a segment, and a way to let time pass on it. Virtual or live.
+#pragma once
+
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <dpchip/core/ticks.hpp>
+#include <dpchip/dpchip.h>
+#include <dpchip/fdl/baud.hpp>
+#include <dpchip/live/recorder.hpp>
+#include <dpchip/segment/segment.hpp>
+
+namespace dpchip::capi {
+
+using core::Ticks;
+
+class Line {
+public:
+    virtual ~Line() = default;
+    Line() = default;
+    Line(const Line&) = delete;
+    Line& operator=(const Line&) = delete;
+
+    virtual segment::Segment& segment() = 0;
+    virtual Ticks now() const = 0;
+    /// Lets time pass, at most `duration`, until an attached chip's X/INT has risen; returns what has passed.
+    virtual Ticks run(Ticks duration) = 0;
+    /// A processor access takes this long.
+    virtual void spend(Ticks duration) = 0;
+    virtual void stop() noexcept {}
+    virtual std::string path() const { return {}; }
+    /// The test as a master. Codes as in the C API.
+    virtual int send(std::span<const std::uint8_t> octets) = 0;
+    virtual int receive(std::span<std::uint8_t> into, Ticks timeout) = 0;
+    virtual std::int64_t epoch_ns() const { return 0; }
+    virtual segment::StationIndex port() const { return segment::kNobody; }
+    virtual bool is_virtual() const = 0;
+
+    void record(const std::string& file);
+    void end_recording();
+
+    std::vector<dpchip_chip*> chips;
+
+protected:
+    /// True when the X/INT of a chip has gone active since the last time this was asked.
+    bool x_int_rose();
+
+private:
+    struct Recording {
+        std::ofstream file;
+        std::optional<trace::PcapngWriter> writer;
+        std::optional<live::Recorder> recorder;
+    };
+    std::unique_ptr<Recording> recording_;
+};
+
+/// Throws std::invalid_argument or live::LineError in words. baud 0: the default.
+std::unique_ptr<Line> open(std::string_view uri, std::uint32_t baud);
+
+}  // namespace dpchip::capi
+
+struct dpchip_line {
+    std::unique_ptr<dpchip::capi::Line> line;
+    std::string path;
+};

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// dpchip_line_*: the line behind the C API.
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "chip.hpp"
+#include "error.hpp"
+#include "line.hpp"
+
+using dpchip::capi::fail;
+using dpchip::capi::guarded;
+using dpchip::core::Ticks;
+
+namespace {
+
+int null_line() { return fail(DPCHIP_E_ARGUMENT, "the line is a null pointer"); }
+
+constexpr std::int64_t kLongest_ns = std::numeric_limits<std::int64_t>::max() / dpchip::core::kTicksPerNs / 2;
+
+Ticks duration_ns(std::int64_t ns) { return dpchip::core::nanoseconds(std::clamp<std::int64_t>(ns, 0, kLongest_ns)); }
+
+/// No further than time reaches.
+Ticks bounded(const dpchip::capi::Line& line, Ticks duration) {
+    return std::min(duration, Ticks{dpchip::core::kNever.n / 2} - line.now());
+}
+
+void forget_rises(dpchip::capi::Line& line) {
+    for (dpchip_chip* chip : line.chips) chip->x_int_rose = false;
+}
+
+Ticks run(dpchip::capi::Line& line, Ticks duration) {
+    const Ticks passed = line.run(std::max(Ticks{}, bounded(line, duration)));
+    line.segment().settle();
+    for (dpchip_chip* chip : line.chips) chip->watch_x_int();
+    forget_rises(line);
+    return passed;
+}
+
+void put_on(dpchip::capi::Line& line, dpchip_chip& chip) {
+    chip.attachment.set_offset(chip.model.now() - line.now());
+    const auto index = line.segment().attach(chip.attachment, std::string{chip.model.traits().name});
+    if (!index) throw std::logic_error{dpchip::segment::name(index.error())};
+    chip.index = *index;
+    chip.line = &line;
+    line.chips.push_back(&chip);
+}
+
+void take_off(dpchip::capi::Line& line, dpchip_chip& chip) {
+    chip.attachment.advance(std::max(line.now(), line.segment().now()));
+    line.segment().detach(chip.index);
+    std::erase(line.chips, &chip);
+    chip.line = nullptr;
+}
+
+}  // namespace
+
+dpchip_line* dpchip_line_open(const char* uri, uint32_t baud) {
+    return guarded([&]() -> dpchip_line* {
+        if (uri == nullptr) {
+            fail(DPCHIP_E_ARGUMENT, "the URI is a null pointer");
+            return nullptr;
+        }
+        try {
+            auto line = std::make_unique<dpchip_line>();
+            line->line = dpchip::capi::open(uri, baud);
+            line->path = line->line->path();
+            return line.release();
+        } catch (const std::invalid_argument& e) {
+            fail(DPCHIP_E_ARGUMENT, e.what());
+            return nullptr;
+        }
+    }, [](int) -> dpchip_line* { return nullptr; });
+}
+
+void dpchip_line_close(dpchip_line* line) {
+    if (line == nullptr) return;
+    guarded([&] {
+        while (!line->line->chips.empty()) take_off(*line->line, *line->line->chips.back());
+        line->line->end_recording();
+        return 0;
+    });
+    delete line;
+}
+
+const char* dpchip_line_path(const dpchip_line* line) { return line == nullptr ? "" : line->path.c_str(); }
+
+int dpchip_line_attach(dpchip_line* line, dpchip_chip* chip) {
+    if (line == nullptr || chip == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    if (chip->line != nullptr) return fail(DPCHIP_E_STATE, "the chip is on a line already");
+    return guarded([&] {
+        try {
+            put_on(*line->line, *chip);
+            return static_cast<int>(DPCHIP_OK);
+        } catch (const std::logic_error& e) {
+            return fail(DPCHIP_E_STATE, e.what());
+        }
+    });
+}
+
+int dpchip_line_detach(dpchip_line* line, dpchip_chip* chip) {
+    if (line == nullptr || chip == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    if (chip->line != line->line.get()) return fail(DPCHIP_E_STATE, "the chip is not on this line");
+    return guarded([&] {
+        take_off(*line->line, *chip);
+        return static_cast<int>(DPCHIP_OK);
+    });
+}
+
+int64_t dpchip_line_run(dpchip_line* line, int64_t nanoseconds) {
+    if (line == nullptr) return null_line();
+    return guarded([&] { return dpchip::core::to_ns(run(*line->line, duration_ns(nanoseconds))); });
+}
+
+int64_t dpchip_line_run_ticks(dpchip_line* line, int64_t ticks) {
+    if (line == nullptr) return null_line();
+    return guarded([&] { return run(*line->line, Ticks{ticks}).n; });
+}
+
+int64_t dpchip_line_now_ticks(const dpchip_line* line) { return line == nullptr ? 0 : line->line->now().n; }
+
+int64_t dpchip_line_next_ticks(dpchip_line* line) {
+    return line == nullptr ? std::numeric_limits<std::int64_t>::max() : line->line->segment().next().n;
+}
+
+void dpchip_line_stop(dpchip_line* line) {
+    if (line != nullptr) line->line->stop();
+}
+
+int dpchip_line_send(dpchip_line* line, const void* bytes, size_t n) {
+    if (line == nullptr || bytes == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    if (n < 1 || n > dpchip::fdl::kMaxTelegram) return fail(DPCHIP_E_ARGUMENT, "a telegram has 1 to 255 octets");
+    return guarded([&] { return line->line->send({static_cast<const std::uint8_t*>(bytes), n}); });
+}
+
+int dpchip_line_receive(dpchip_line* line, void* bytes, size_t capacity, int64_t timeout_ns) {
+    if (line == nullptr || (bytes == nullptr && capacity != 0)) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    return guarded([&] { return line->line->receive({static_cast<std::uint8_t*>(bytes), capacity}, duration_ns(timeout_ns)); });
+}
+
+int dpchip_line_record(dpchip_line* line, const char* path) {
+    if (line == nullptr) return null_line();
+    return guarded([&] {
+        try {
+            if (path == nullptr) line->line->end_recording();
+            else line->line->record(path);
+            return static_cast<int>(DPCHIP_OK);
+        } catch (const std::runtime_error& e) {
+            return fail(DPCHIP_E_FILE, e.what());
+        }
+    });
+}
