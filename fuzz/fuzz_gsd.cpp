@@ -23,9 +23,7 @@ void use(const gsd::Gsd& g) {
     } catch (const gsd::GsdError&) {
         try {
             c = gsd::configure_modules(g, {0});
-        } catch (const gsd::GsdError&) {
-            return;
-        }
+        } catch (const gsd::GsdError&) { return; }
     }
     try {
         const gsd::UserPrmData data = gsd::user_prm_data(g, c);
@@ -33,8 +31,7 @@ void use(const gsd::Gsd& g) {
         // What the station proposes it must take.
         if (gsd::check_user_prm(g, data, data.octets)) std::abort();
         static_cast<void>(gsd::diag_texts(g, data.octets));
-    } catch (const gsd::GsdError&) {
-    }
+    } catch (const gsd::GsdError&) {}
 }
 
 }  // namespace

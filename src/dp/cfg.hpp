@@ -23,10 +23,10 @@ enum class CfgUse : std::uint8_t { chk_cfg, get_cfg };
 /// Why octets are not a configuration.
 enum class CfgError : std::uint8_t {
     none,
-    truncated,        ///< a block of the special format goes on beyond the last octet
-    wildcard,         ///< manufacturer count 15 outside Chk_Cfg
-    too_many_inputs,  ///< inputs exceed 244 octets with this block
-    too_many_outputs, ///< outputs exceed 244 octets with this block
+    truncated,         ///< a block of the special format goes on beyond the last octet
+    wildcard,          ///< manufacturer count 15 outside Chk_Cfg
+    too_many_inputs,   ///< inputs exceed 244 octets with this block
+    too_many_outputs,  ///< outputs exceed 244 octets with this block
 };
 
 constexpr const char* name(CfgError e) {

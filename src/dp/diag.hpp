@@ -79,11 +79,11 @@ struct DiagHeader {
 
 enum class DiagError : std::uint8_t {
     none,
-    too_short,      ///< fewer than 6 octets
-    too_long,       ///< more than 244 octets
-    no_room,        ///< the buffer to encode into is too small
-    length_zero,    ///< a block that announces no octets, not even its header
-    truncated,      ///< a block goes on beyond the last octet
+    too_short,    ///< fewer than 6 octets
+    too_long,     ///< more than 244 octets
+    no_room,      ///< the buffer to encode into is too small
+    length_zero,  ///< a block that announces no octets, not even its header
+    truncated,    ///< a block goes on beyond the last octet
 };
 
 constexpr const char* name(DiagError e) {
@@ -188,8 +188,9 @@ struct ChannelDiag {
 constexpr ChannelDiag channel_diag(const DiagBlock& block) {
     if (block.kind != DiagBlockKind::channel || block.octets.size() < 3) return {};
     const std::uint8_t channel = block.octets[1], type = block.octets[2];
-    return {block.number(),          static_cast<std::uint8_t>(channel & 0x3Fu), core::bit(channel, 6),
-            core::bit(channel, 7), core::slice(type, 5, 3),                    core::slice(type, 0, 5)};
+    return {block.number(),          static_cast<std::uint8_t>(channel & 0x3Fu),
+            core::bit(channel, 6),   core::bit(channel, 7),
+            core::slice(type, 5, 3), core::slice(type, 0, 5)};
 }
 
 constexpr const char* channel_type_name(std::uint8_t type) {
@@ -198,22 +199,28 @@ constexpr const char* channel_type_name(std::uint8_t type) {
 }
 /// 16..31 are the device's own: a GSD's Channel_Diag names them.
 constexpr const char* channel_error_name(std::uint8_t error) {
-    constexpr const char* names[10]{"reserved",         "short circuit", "undervoltage",
-                                    "overvoltage",      "overload",      "overtemperature",
-                                    "line break",       "upper limit value exceeded",
-                                    "lower limit value exceeded", "error"};
+    constexpr const char* names[10]{"reserved",
+                                    "short circuit",
+                                    "undervoltage",
+                                    "overvoltage",
+                                    "overload",
+                                    "overtemperature",
+                                    "line break",
+                                    "upper limit value exceeded",
+                                    "lower limit value exceeded",
+                                    "error"};
     if (error < 10) return names[error];
     return error >= 16 && error < 32 ? "manufacturer specific" : "reserved";
 }
 
 /// A DP-V1 slave's device-related block: an alarm or a status (reference 5.5).
 struct AlarmStatus {
-    bool status{};              ///< a status PDU, else an alarm
-    std::uint8_t type{};        ///< Alarm_Type or Status_Type, 0..127
-    std::uint8_t slot{};        ///< 0..254
-    std::uint8_t seq_nr{};      ///< alarms: 0..31
-    bool add_ack{};             ///< alarms: an additional acknowledgement is wanted
-    std::uint8_t specifier{};   ///< 0 general, 1 appears, 2 disappears, 3 disappears and the slot is still disturbed
+    bool status{};             ///< a status PDU, else an alarm
+    std::uint8_t type{};       ///< Alarm_Type or Status_Type, 0..127
+    std::uint8_t slot{};       ///< 0..254
+    std::uint8_t seq_nr{};     ///< alarms: 0..31
+    bool add_ack{};            ///< alarms: an additional acknowledgement is wanted
+    std::uint8_t specifier{};  ///< 0 general, 1 appears, 2 disappears, 3 disappears and the slot is still disturbed
     std::span<const std::uint8_t> data{};
 };
 
@@ -233,8 +240,8 @@ constexpr core::Result<AlarmStatus, DiagError> alarm_status(const DiagBlock& blo
 }
 
 constexpr const char* alarm_type_name(std::uint8_t type) {
-    constexpr const char* names[7]{"reserved", "Diagnostic_Alarm", "Process_Alarm", "Pull_Alarm",
-                                   "Plug_Alarm", "Status_Alarm",   "Update_Alarm"};
+    constexpr const char* names[7]{"reserved",   "Diagnostic_Alarm", "Process_Alarm", "Pull_Alarm",
+                                   "Plug_Alarm", "Status_Alarm",     "Update_Alarm"};
     if (type < 7) return names[type];
     return type >= 32 && type <= 126 ? "Manufacturer_Specific_Alarm" : "reserved";
 }

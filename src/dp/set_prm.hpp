@@ -12,7 +12,7 @@
 
 namespace dpchip::dp {
 
-inline constexpr std::size_t kSetPrmHeader = 7;      ///< octets in front of the user parameters
+inline constexpr std::size_t kSetPrmHeader = 7;  ///< octets in front of the user parameters
 inline constexpr std::size_t kMaxSetPrm = 244;
 inline constexpr std::size_t kMaxUserPrm = kMaxSetPrm - kSetPrmHeader;  ///< 237
 

@@ -12,8 +12,8 @@
 namespace dpchip::dp {
 
 inline constexpr std::size_t kSetSlaveAddHeader = 4;
-inline constexpr std::uint8_t kDefaultAddress = 126;     ///< of a slave that has not been given one
-inline constexpr std::uint8_t kMaxSlaveAddress = 125;    ///< highest address that may be given
+inline constexpr std::uint8_t kDefaultAddress = 126;   ///< of a slave that has not been given one
+inline constexpr std::uint8_t kMaxSlaveAddress = 125;  ///< highest address that may be given
 
 struct SetSlaveAdd {
     std::uint8_t address{};  ///< New_Slave_Address

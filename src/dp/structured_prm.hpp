@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structured_Prm_Data: the blocks in a Set_Prm with Prm_Structure = 1 and in every Set_Ext_Prm (reference 3.4.6, 6.1, 6.2, 6.4).
-// The contents of the blocks are their users' business.
+// Structured_Prm_Data: the blocks in a Set_Prm with Prm_Structure = 1 and in every Set_Ext_Prm
+// (reference 3.4.6, 6.1, 6.2, 6.4). The contents of the blocks are their users' business.
 #pragma once
 
 #include <cstddef>

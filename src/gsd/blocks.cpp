@@ -55,10 +55,12 @@ void Parser::ext_user_prm_data(Statement& s) {
 }
 
 void Parser::data_type(Statement& s) {
+    // clang-format off
     static constexpr std::pair<const char*, DataType> types[]{
         {"bit", DataType::bit},           {"bitarea", DataType::bit_area},     {"unsigned8", DataType::unsigned8},
         {"unsigned16", DataType::unsigned16}, {"unsigned32", DataType::unsigned32}, {"signed8", DataType::signed8},
         {"signed16", DataType::signed16}, {"signed32", DataType::signed32}};
+    // clang-format on
     if (!in_parameter_) return warn(s.at, s.name + " outside ExtUserPrmData is ignored");
     if (has_type_) return error(s.at, s.name + ": the parameter has a type already");
     has_type_ = true;
@@ -216,7 +218,8 @@ void Parser::unit_diag_bit_help(Statement& s) {
     if (!t) return;
     auto& bits = s.key.find("not_bit") != std::string::npos ? diag().not_bits : diag().bits;
     // A help text follows its bit's text.
-    if (bits.empty() || !s.index || bits.back().bit != *s.index) return warn(s.at, s.name + ": no text of that bit before it");
+    if (bits.empty() || !s.index || bits.back().bit != *s.index)
+        return warn(s.at, s.name + ": no text of that bit before it");
     bits.back().help = *t;
     done(s);
 }

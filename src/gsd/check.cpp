@@ -29,12 +29,8 @@ public:
     }
 
 private:
-    void warn(Position at, std::string message) {
-        diagnostics_.push_back({Severity::warning, at, std::move(message)});
-    }
-    void error(Position at, std::string message) {
-        diagnostics_.push_back({Severity::error, at, std::move(message)});
-    }
+    void warn(Position at, std::string message) { diagnostics_.push_back({Severity::warning, at, std::move(message)}); }
+    void error(Position at, std::string message) { diagnostics_.push_back({Severity::error, at, std::move(message)}); }
 
     void limits() {
         if (gsd_.max_diag_data_len < dp::kDiagHeader || gsd_.max_diag_data_len > dp::kMaxDiag)
@@ -70,10 +66,8 @@ private:
         for (const PrmConst& c : prm.constants) end = std::max(end, c.offset + c.octets.size());
         for (const PrmRef& r : prm.refs) {
             const auto found = parameters_.find(r.number);
-            if (found == parameters_.end())
-                error(r.at, "there is no ExtUserPrmData " + std::to_string(r.number));
-            else
-                end = std::max(end, r.offset + octets(found->second->type));
+            if (found == parameters_.end()) error(r.at, "there is no ExtUserPrmData " + std::to_string(r.number));
+            else end = std::max(end, r.offset + octets(found->second->type));
         }
         if (end > limit)
             warn(at, "parameters take " + std::to_string(end) + " octets, but " + length_keyword + " is " +

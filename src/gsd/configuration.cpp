@@ -59,7 +59,8 @@ void check_slots(const Gsd& gsd, const std::vector<std::size_t>& modules) {
         if (rule.slot < 1 || rule.slot > modules.size()) continue;
         const Module& m = gsd.modules[modules[rule.slot - 1]];
         if (m.reference && rule.allows(*m.reference)) continue;
-        const auto allowed = modules_where(gsd, [&](const Module& c) { return c.reference && rule.allows(*c.reference); });
+        const auto allowed =
+            modules_where(gsd, [&](const Module& c) { return c.reference && rule.allows(*c.reference); });
         throw GsdError{label(gsd) + ": module '" + m.name + "' may not be in slot " + std::to_string(rule.slot) +
                        "; allowed are:" + listed(gsd, allowed)};
     }

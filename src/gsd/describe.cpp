@@ -80,7 +80,8 @@ std::string station(const Gsd& g) {
 std::string range_text(const Parameter& p) {
     std::string text;
     for (const ValueRange& r : p.allowed)
-        text += (text.empty() ? "" : ",") + std::to_string(r.min) + (r.max != r.min ? ".." + std::to_string(r.max) : "");
+        text +=
+            (text.empty() ? "" : ",") + std::to_string(r.min) + (r.max != r.min ? ".." + std::to_string(r.max) : "");
     return text;
 }
 
@@ -185,7 +186,8 @@ std::string describe_parameters(const Gsd& g, const UserPrmData& data) {
         const Parameter& p = g.parameters[f.parameter];
         std::string bits;
         if (p.type == DataType::bit) bits = "(" + std::to_string(p.first_bit) + ")";
-        if (p.type == DataType::bit_area) bits = "(" + std::to_string(p.first_bit) + "-" + std::to_string(p.last_bit) + ")";
+        if (p.type == DataType::bit_area)
+            bits = "(" + std::to_string(p.first_bit) + "-" + std::to_string(p.last_bit) + ")";
         const std::string_view text = g.value_text(p, f.value);
         out += padded(f.slot == 0 ? "device" : "slot " + std::to_string(f.slot), 9) +
                padded("@" + std::to_string(f.offset), 6) + padded(name(p.type) + bits, 13) + p.name + " = " +

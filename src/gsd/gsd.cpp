@@ -10,9 +10,11 @@ struct RateFacts {
     const char* name;
     std::uint32_t bits_per_second;
 };
+// clang-format off
 constexpr RateFacts kRateFacts[kRates]{
     {"9.6", 9'600},      {"19.2", 19'200},    {"31.25", 31'250},    {"45.45", 45'450},    {"93.75", 93'750},   {"187.5", 187'500},
     {"500", 500'000},    {"1.5M", 1'500'000}, {"3M", 3'000'000},    {"6M", 6'000'000},    {"12M", 12'000'000}};
+// clang-format on
 
 bool any_range_has(const std::vector<ValueRange>& ranges, std::int64_t value) {
     return std::ranges::any_of(ranges, [&](const ValueRange& r) { return r.min <= value && value <= r.max; });

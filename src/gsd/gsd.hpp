@@ -23,7 +23,17 @@ namespace dpchip::gsd {
 
 /// Transmission rates a GSD can name, slowest first.
 enum class Rate : std::uint8_t {
-    kbit_9_6, kbit_19_2, kbit_31_25, kbit_45_45, kbit_93_75, kbit_187_5, kbit_500, mbit_1_5, mbit_3, mbit_6, mbit_12
+    kbit_9_6,
+    kbit_19_2,
+    kbit_31_25,
+    kbit_45_45,
+    kbit_93_75,
+    kbit_187_5,
+    kbit_500,
+    mbit_1_5,
+    mbit_3,
+    mbit_6,
+    mbit_12
 };
 inline constexpr std::size_t kRates = 11;
 
@@ -39,9 +49,7 @@ struct RateSupport {
 
 // ---- parameters ---------------------------------------------------------------------------------------------------
 
-enum class DataType : std::uint8_t {
-    bit, bit_area, unsigned8, unsigned16, unsigned32, signed8, signed16, signed32
-};
+enum class DataType : std::uint8_t { bit, bit_area, unsigned8, unsigned16, unsigned32, signed8, signed16, signed32 };
 /// "Bit", "BitArea", "Unsigned8", ...
 const char* name(DataType type);
 /// Octets in the user parameters: 1, 2 or 4.
@@ -62,10 +70,10 @@ struct Parameter {
     std::uint8_t first_bit{};  ///< bit and bit_area only, 0..7
     std::uint8_t last_bit{};
     std::int64_t default_value{};
-    std::vector<ValueRange> allowed;            ///< a value list is ranges of one value; empty: all the type holds
-    std::optional<std::int64_t> text_ref{};     ///< Prm_Text_Ref
-    bool changeable{true};                      ///< revision 5: Changeable
-    bool visible{true};                         ///< revision 5: Visible
+    std::vector<ValueRange> allowed;         ///< a value list is ranges of one value; empty: all the type holds
+    std::optional<std::int64_t> text_ref{};  ///< Prm_Text_Ref
+    bool changeable{true};                   ///< revision 5: Changeable
+    bool visible{true};                      ///< revision 5: Visible
     Position at{};
 
     bool allows(std::int64_t value) const;
@@ -92,7 +100,8 @@ struct PrmRef {
 
 /// Parameters of the device or of a module. Offsets count from its own first octet.
 struct UserPrm {
-    std::optional<std::uint16_t> length{};  ///< Max_User_Prm_Data_Len of the device, Ext_Module_Prm_Data_Len of a module
+    /// Max_User_Prm_Data_Len of the device, Ext_Module_Prm_Data_Len of a module.
+    std::optional<std::uint16_t> length{};
     std::vector<PrmConst> constants;
     std::vector<PrmRef> refs;
 
@@ -135,16 +144,16 @@ struct UnitDiagType {
 // ---- modules ------------------------------------------------------------------------------------------------------
 
 struct Module {
-    std::string name;                          ///< blanks at its ends removed
-    std::vector<std::uint8_t> cfg;             ///< configuration octets
-    std::optional<std::int64_t> reference{};   ///< Module_Reference
-    std::uint16_t input_octets{};              ///< by dp/cfg
+    std::string name;                         ///< blanks at its ends removed
+    std::vector<std::uint8_t> cfg;            ///< configuration octets
+    std::optional<std::int64_t> reference{};  ///< Module_Reference
+    std::uint16_t input_octets{};             ///< by dp/cfg
     std::uint16_t output_octets{};
     UserPrm prm;
-    UserPrm ext_prm;                           ///< X_ keywords: for Set_Ext_Prm
+    UserPrm ext_prm;  ///< X_ keywords: for Set_Ext_Prm
     DiagTexts diag;
     std::string info_text;
-    bool preset{};                             ///< plugged when the station is put on the bus
+    bool preset{};  ///< plugged when the station is put on the bus
     Position at{};
 };
 
@@ -152,8 +161,8 @@ struct Module {
 struct SlotRule {
     std::uint32_t slot{};
     std::string name;
-    std::int64_t default_module{};      ///< Module_Reference
-    std::vector<ValueRange> allowed;    ///< Module_References
+    std::int64_t default_module{};    ///< Module_Reference
+    std::vector<ValueRange> allowed;  ///< Module_References
     Position at{};
 
     bool allows(std::int64_t reference) const;
@@ -163,9 +172,9 @@ struct SlotRule {
 
 /// A line with a keyword that has no member in Gsd.
 struct Keyword {
-    std::string name;   ///< as written
-    std::string value;  ///< the rest of the line, comment removed
-    bool known{};       ///< a keyword of the standard, else the vendor's own (or a slip of the pen)
+    std::string name;                     ///< as written
+    std::string value;                    ///< the rest of the line, comment removed
+    bool known{};                         ///< a keyword of the standard, else the vendor's own (or a slip of the pen)
     std::optional<std::size_t> module{};  ///< index of the module it stands in
     Position at{};
 };
@@ -202,8 +211,8 @@ struct DpV2 {
     std::uint32_t dxb_max_data_length{};
     std::uint32_t dxb_subscribertable_block_location{};
     bool isochron_mode{}, isochron_mode_required{};
-    std::uint32_t tbase_dp{}, tdp_min{}, tdp_max{};           ///< TBASE in 1/12 us
-    std::uint32_t t_pll_w_max{};                              ///< 1/12 us
+    std::uint32_t tbase_dp{}, tdp_min{}, tdp_max{};  ///< TBASE in 1/12 us
+    std::uint32_t t_pll_w_max{};                     ///< 1/12 us
     std::uint32_t tbase_io{}, ti_min{}, to_min{};
     bool prm_block_structure{}, prm_block_structure_required{};
     bool prm_cmd{};

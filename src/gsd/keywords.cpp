@@ -11,11 +11,17 @@ namespace {
 
 using Find = Target (*)(Gsd&);
 template <auto Member>
-Target top(Gsd& g) { return &(g.*Member); }
+Target top(Gsd& g) {
+    return &(g.*Member);
+}
 template <auto Member>
-Target v1(Gsd& g) { return &(g.dpv1.*Member); }
+Target v1(Gsd& g) {
+    return &(g.dpv1.*Member);
+}
 template <auto Member>
-Target v2(Gsd& g) { return &(g.dpv2.*Member); }
+Target v2(Gsd& g) {
+    return &(g.dpv2.*Member);
+}
 
 struct Scalar {
     const char* keyword;

@@ -181,9 +181,7 @@ void Parser::keep(Statement& s) {
     std::optional<std::size_t> in;
     if (in_module_) in = gsd_.modules.size() - 1;
     std::string name = s.name;
-    if (s.index) {
-        name += "(" + std::to_string(*s.index) + (s.index2 ? "-" + std::to_string(*s.index2) : "") + ")";
-    }
+    if (s.index) { name += "(" + std::to_string(*s.index) + (s.index2 ? "-" + std::to_string(*s.index2) : "") + ")"; }
     gsd_.keywords.push_back({std::move(name), std::string{s.rest}, is_standard_keyword(s.key), in, s.at});
 }
 
@@ -255,7 +253,8 @@ Statement Parser::split(const Line& line) {
 void Parser::line(const Line& line) {
     const Token& first = line.tokens[0];
     if (first.kind != Token::Kind::word) {
-        error(first.at, "keyword expected, not " + quoted(first.kind == Token::Kind::string ? "\"" + first.text + "\"" : first.text));
+        error(first.at, "keyword expected, not " +
+                            quoted(first.kind == Token::Kind::string ? "\"" + first.text + "\"" : first.text));
         return;
     }
     if (first.text[0] == '#') {

@@ -34,7 +34,7 @@ struct Token {
         sign,    ///< one of = , ( ) -
     };
     Kind kind{};
-    std::string text;     ///< without quotes
+    std::string text;  ///< without quotes
     Position at{};
     std::size_t begin{};  ///< where it begins in Line::text
 

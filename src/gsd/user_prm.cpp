@@ -10,9 +10,7 @@
 namespace dpchip::gsd {
 namespace {
 
-bool is_signed(DataType t) {
-    return t == DataType::signed8 || t == DataType::signed16 || t == DataType::signed32;
-}
+bool is_signed(DataType t) { return t == DataType::signed8 || t == DataType::signed16 || t == DataType::signed32; }
 
 std::string label(const Gsd& gsd) { return gsd.file.empty() ? gsd.model_name : gsd.file; }
 
@@ -240,12 +238,16 @@ std::optional<PrmFault> check_user_prm(const Gsd& gsd, const UserPrmData& expect
                                        std::span<const std::uint8_t> received) {
     using Kind = PrmFault::Kind;
     if (received.size() != expected.octets.size())
-        return PrmFault{Kind::length, 0, {},
+        return PrmFault{Kind::length,
+                        0,
+                        {},
                         std::to_string(received.size()) + " octets of user parameters, not " +
                             std::to_string(expected.octets.size())};
     for (std::size_t i = 0; i < received.size(); ++i)
         if (((received[i] ^ expected.octets[i]) & ~expected.variable[i] & 0xFFu) != 0)
-            return PrmFault{Kind::constant, i, {},
+            return PrmFault{Kind::constant,
+                            i,
+                            {},
                             "constant octet " + std::to_string(i) + " is " + in_hex(received[i]) + ", not " +
                                 in_hex(expected.octets[i])};
     for (std::size_t i = 0; i < expected.fields.size(); ++i) {

@@ -38,10 +38,10 @@ struct UserPrmData {
 
 /// A wish: this parameter shall have this value.
 struct PrmSetting {
-    std::string parameter;                 ///< its text (case and runs of blanks do not matter) or its number
-    std::string value;                     ///< a number, decimal or 0x.., or a text of its PrmText
-    std::optional<std::uint32_t> slot{};   ///< needed when several slots have the parameter
-    std::optional<std::size_t> offset{};   ///< needed when a slot has it several times; offset in the user parameters
+    std::string parameter;                ///< its text (case and runs of blanks do not matter) or its number
+    std::string value;                    ///< a number, decimal or 0x.., or a text of its PrmText
+    std::optional<std::uint32_t> slot{};  ///< needed when several slots have the parameter
+    std::optional<std::size_t> offset{};  ///< needed when a slot has it several times; offset in the user parameters
 };
 
 /// Reads "[SLOT:]PARAMETER[@OFFSET]=VALUE". Throws GsdError when there is no '='.

@@ -23,9 +23,7 @@ namespace {
 std::string refusal(const std::function<void()>& f) {
     try {
         f();
-    } catch (const gsd::GsdError& e) {
-        return e.what();
-    }
+    } catch (const gsd::GsdError& e) { return e.what(); }
     return "not refused";
 }
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -97,7 +95,8 @@ TEST_F(RemoteIo, user_parameters_are_the_devices_then_the_modules_in_slot_order)
 TEST_F(RemoteIo, settings_go_by_text_number_slot_and_value_text) {
     const auto c = plug({"8 DI", "8 DI", "2 AI"});
     const Settings settings{gsd::prm_setting("outputs on fail-safe=Keep last value"), gsd::prm_setting("3=0x200"),
-                            gsd::prm_setting("2:Input filter [ms]=20"), gsd::prm_setting("3:Range channel 1 = 4 .. 20 mA"),
+                            gsd::prm_setting("2:Input filter [ms]=20"),
+                            gsd::prm_setting("3:Range channel 1 = 4 .. 20 mA"),
                             gsd::prm_setting("Zero correction@10=-2")};
     const auto data = gsd::user_prm_data(g, c, settings);
     EXPECT_EQ(data.octets, (Octets{0, 0, 0, 0x03, 0x02, 0x00, 0x03, 0x14, 0x30, 0, 0xFF, 0xFE}));
@@ -170,8 +169,8 @@ TEST_F(GrammarStation, slot_rules_are_kept_and_name_what_is_allowed) {
 
 TEST_F(GrammarStation, values_of_every_type_are_big_endian_and_signed_ones_come_back_signed) {
     const auto data = gsd::user_prm_data(g, gsd::configure(g, Names{"#1", "#2"}));
-    EXPECT_EQ(data.octets, (Octets{0, 0, 0, 0xFF, 0xAA, 0x14, 0x10, 0x01, 0x02, 1, 2, 3, 4, 0xFF, 0xFF, 0xFE, 0xFF, 0xFF,
-                                   0xFF, 0xFD, 9, 0}));
+    EXPECT_EQ(data.octets, (Octets{0, 0, 0,    0xFF, 0xAA, 0x14, 0x10, 0x01, 0x02, 1, 2,
+                                   3, 4, 0xFF, 0xFF, 0xFE, 0xFF, 0xFF, 0xFF, 0xFD, 9, 0}));
     std::vector<std::int64_t> values;
     for (const auto& f : data.fields) values.push_back(f.value);
     EXPECT_EQ(values, (std::vector<std::int64_t>{1, 5, 16, 258, 0x01020304, -1, -2, -3, 9}));
@@ -189,8 +188,9 @@ TEST_F(GrammarStation, DPV1_status_bits_of_a_DP_V1_slave_are_the_masters) {
 
 TEST_F(GrammarStation, a_parameter_that_is_not_changeable_keeps_its_default) {
     const auto c = gsd::configure(g, Names{"#1", "#2"});
-    EXPECT_TRUE(has(refusal([&] { static_cast<void>(gsd::user_prm_data(g, c, Settings{gsd::prm_setting("Fixed=8")})); }),
-                    "not changeable"));
+    EXPECT_TRUE(
+        has(refusal([&] { static_cast<void>(gsd::user_prm_data(g, c, Settings{gsd::prm_setting("Fixed=8")})); }),
+            "not changeable"));
     EXPECT_NO_THROW(static_cast<void>(gsd::user_prm_data(g, c, Settings{gsd::prm_setting("Fixed=9")})));
 }
 

@@ -26,7 +26,8 @@ namespace {
 std::string row(const gsd::Summary& s) {
     std::ostringstream out;
     out << std::filesystem::path{s.file}.filename().string() << ' ' << gsd::hex(s.ident_number) << ' ' << s.gsd_revision
-        << ' ' << s.modules << ' ' << s.parameters << ' ' << s.prm_texts << ' ' << s.diag_texts << ' ' << s.unknown_keywords;
+        << ' ' << s.modules << ' ' << s.parameters << ' ' << s.prm_texts << ' ' << s.diag_texts << ' '
+        << s.unknown_keywords;
     return out.str();
 }
 
@@ -151,9 +152,7 @@ TEST(FieldFiles, modules_that_fit_the_station_can_be_configured_by_their_positio
                 const auto c = gsd::configure_modules(p.gsd, {i});
                 EXPECT_EQ(c.cfg, p.gsd.modules[i].cfg);
                 ++configured;
-            } catch (const gsd::GsdError&) {
-                ++refused;
-            }
+            } catch (const gsd::GsdError&) { ++refused; }
         }
     }
     if (configured != 0) { EXPECT_EQ(refused, 0u); }

@@ -67,7 +67,8 @@ TEST_F(Grammar, scalars_are_read_in_any_spelling) {
 
 TEST_F(Grammar, rates_and_their_response_times) {
     using gsd::Rate;
-    EXPECT_TRUE(g.rate(Rate::kbit_9_6).supported && g.rate(Rate::kbit_187_5).supported && g.rate(Rate::mbit_12).supported);
+    EXPECT_TRUE(g.rate(Rate::kbit_9_6).supported && g.rate(Rate::kbit_187_5).supported &&
+                g.rate(Rate::mbit_12).supported);
     EXPECT_FALSE(g.rate(Rate::kbit_19_2).supported);
     EXPECT_EQ(g.rate(Rate::kbit_9_6).max_tsdr, 60);
     EXPECT_EQ(g.rate(Rate::mbit_12).max_tsdr, 95);
@@ -185,9 +186,10 @@ TEST(Parse, errors_are_all_found_and_carry_line_and_column) {
         static_cast<void>(gsd::load(data_file("errors.gsd")));
         FAIL() << "load() must refuse";
     } catch (const gsd::GsdError& e) {
-        EXPECT_EQ(e.diagnostics().size(),
-                  static_cast<std::size_t>(std::ranges::count(p.diagnostics, gsd::Severity::error, &gsd::Diagnostic::severity)));
-        EXPECT_NE(std::string{e.what()}.find("errors.gsd:2:15: error: string without closing quote"), std::string::npos);
+        EXPECT_EQ(e.diagnostics().size(), static_cast<std::size_t>(std::ranges::count(
+                                              p.diagnostics, gsd::Severity::error, &gsd::Diagnostic::severity)));
+        EXPECT_NE(std::string{e.what()}.find("errors.gsd:2:15: error: string without closing quote"),
+                  std::string::npos);
     }
 }
 
@@ -233,14 +235,29 @@ TEST(Parse, line_ends_and_byte_order_mark_do_not_matter) {
 TEST(Parse, UTF_8_stays_and_columns_count_characters) {
     const gsd::Parsed p = gsd::parse("#Profibus_DP\nVendor_Name = \"\u00C4\u00D6\u00DC\" rest\nIdent_Number=1\n");
     EXPECT_EQ(p.gsd.vendor_name, "\u00C4\u00D6\u00DC");
-    EXPECT_NE(listed(p).find("2:21:W: Vendor_Name: 'rest' and what follows is ignored"), std::string::npos) << listed(p);
+    EXPECT_NE(listed(p).find("2:21:W: Vendor_Name: 'rest' and what follows is ignored"), std::string::npos)
+        << listed(p);
 }
 
 TEST(Parse, numbers_are_decimal_or_hexadecimal_and_bounded) {
-    const std::vector<std::pair<const char*, std::optional<std::int64_t>>> rows{
-        {"0", 0}, {"0012", 12}, {"0x1F", 31}, {"0X1f", 31}, {"1Fh", 31}, {"-5", -5}, {"+5", 5}, {"4294967295", 4294967295},
-        {"", {}}, {"0x", {}}, {"h", {}}, {"-", {}}, {"1.5", {}}, {"12A", {}}, {"0xG", {}}, {"--1", {}}, {"99999999999999999999", {}},
-        {"0xFFFFFFFFFFFFFFFFFFFFFFFF", {}}};
+    const std::vector<std::pair<const char*, std::optional<std::int64_t>>> rows{{"0", 0},
+                                                                                {"0012", 12},
+                                                                                {"0x1F", 31},
+                                                                                {"0X1f", 31},
+                                                                                {"1Fh", 31},
+                                                                                {"-5", -5},
+                                                                                {"+5", 5},
+                                                                                {"4294967295", 4294967295},
+                                                                                {"", {}},
+                                                                                {"0x", {}},
+                                                                                {"h", {}},
+                                                                                {"-", {}},
+                                                                                {"1.5", {}},
+                                                                                {"12A", {}},
+                                                                                {"0xG", {}},
+                                                                                {"--1", {}},
+                                                                                {"99999999999999999999", {}},
+                                                                                {"0xFFFFFFFFFFFFFFFFFFFFFFFF", {}}};
     for (const auto& [text, value] : rows) EXPECT_EQ(gsd::to_number(text), value) << text;
 }
 
