@@ -22,6 +22,7 @@ struct Example {
 std::ostream& operator<<(std::ostream& os, const Example& e) { return os << testing::PrintToString(e.cfg); }
 
 class CfgExamples : public testing::TestWithParam<Example> {};
+// proves: APC3 A.3-10, APC3 A.3-13..16, APC3 A.3-20, E062
 TEST_P(CfgExamples, add_up_to_the_lengths_of_the_reference) {
     const auto& e = GetParam();
     const dp::CfgTotals t = dp::cfg_totals(e.cfg);
@@ -39,6 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Reference, CfgExamples, testing::Values(
     Example{{0x0F}, 0, 0, 1}, Example{{0x4F, 0x00, 0x10}, 2, 0, 2}, Example{{0x02, 0xAA, 0xBB, 0x20}, 0, 1, 2}));
 // clang-format on
 
+// proves: APC3 A.3-03..06, APC3 A.3-08..09, E062
 TEST(Cfg, every_general_octet_follows_the_formula) {
     int seen = 0;
     for (unsigned b = 0; b < 256; ++b) {
@@ -61,6 +63,7 @@ TEST(Cfg, every_general_octet_follows_the_formula) {
     EXPECT_EQ(seen, 192);
 }
 
+// proves: APC3 A.3-07, APC3 A.3-11..19, APC3 A.3-21, E063
 TEST(Cfg, every_special_header_with_every_length_octet_follows_the_formula) {
     for (unsigned header = 0; header < 256; ++header) {
         if ((header & 0x30) != 0) continue;
@@ -97,6 +100,7 @@ TEST(Cfg, every_shortened_special_block_is_truncated_at_its_first_octet) {
     }
 }
 
+// proves: APC3 A.3-16
 TEST(Cfg, the_outputs_length_octet_comes_first_in_a_block_with_both) {
     const Octets cfg{0xC0, 0x01, 0x82};
     const auto block = dp::cfg_block(cfg, 0);

@@ -40,6 +40,7 @@ TEST(Diag, typical_headers_say_what_the_reference_says) {
     EXPECT_TRUE(header({0x00, 0x0C, 0x80, 2, 0x47, 0x11}).has(Flag::ext_diag_overflow));
 }
 
+// proves: APC3 A.4-02..11, APC3 A.4-13..15, APC3 A.4-17, APC3 A.4-19
 TEST(Diag, each_flag_is_one_bit_of_the_right_octet) {
     std::set<unsigned> seen;
     for (const auto& bit : dp::kDiagBits) {
@@ -66,6 +67,7 @@ TEST(Diag, lengths_outside_6_to_244_are_refused) {
     EXPECT_EQ(dp::encode(dp::DiagHeader{}, small).error(), dp::DiagError::no_room);
 }
 
+// proves: VPC3C 6.2.4-23, APC3 5.2.4.2-05, APC3 A.4-23
 TEST(ExtDiag, all_four_kinds_are_walked) {
     const Octets ext{0x06, 0x01, 0x03, 0x0D, 0xAA, 0x55, 0x43, 0x05, 0x80, 0x82, 0x44, 0xB1, 0xC7};
     dp::DiagBlockWalker walker{ext};
@@ -170,8 +172,9 @@ TEST(GlobalControl, the_un_bits_dominate_for_every_command) {
     for (unsigned c = 0; c < 256; ++c) {
         const dp::GlobalControl gc{static_cast<std::uint8_t>(c), 0};
         const auto expected = [c](unsigned enter, unsigned leave) {
-            return (c & leave) != 0 ? dp::ModeChange::leave : (c & enter) != 0 ? dp::ModeChange::enter
-                                                                              : dp::ModeChange::none;
+            return (c & leave) != 0   ? dp::ModeChange::leave
+                   : (c & enter) != 0 ? dp::ModeChange::enter
+                                      : dp::ModeChange::none;
         };
         EXPECT_EQ(gc.sync(), expected(0x20, 0x10)) << c;
         EXPECT_EQ(gc.freeze(), expected(0x08, 0x04)) << c;

@@ -71,6 +71,7 @@ constexpr Expected kTyped[]{
 };
 // clang-format on
 
+// proves: VPC3C 4.2-03..21, VPC3C 4.2-23..24, VPC3C 4.2-26..34, VPC3C 4.2-38..40, APC3 3.2-02..27, E001, E021, E052
 TEST(ControlParameters, EveryAddressDecodesAsTheManualsPrintIt) {
     EXPECT_EQ(std::size(kTyped), 44u);
     for (const Expected& e : kTyped) {
@@ -163,6 +164,7 @@ TEST(ControlParameters, FieldsSitAtTheBitsThatAddressHppNames) {
     }
 }
 
+// proves: APC3 4.1.1-04, APC3 4.3-21, APC3 4.3-30
 TEST(ControlParameters, FieldsOfAbsentFeaturesAreAbsent) {
     for (const Field& f : find(Variant::apc3, w, 0x07)->fields) {
         if (!f.variants.has(Variant::apc3)) continue;
@@ -195,6 +197,7 @@ TEST(OrganizationalParameters, CellsTheChipWritesAreThoseOfTheReference) {
         EXPECT_EQ(cell.writer == Writer::chip, chip.contains(cell.address)) << cell.name;
 }
 
+// proves: VPC3C 4.2-02, VPC3C 4.3-05, VPC3C 8.1.1-01, APC3 3.2-01, APC3 3.3-04
 TEST(OrganizationalParameters, MotorolaModeSwapsTheWordRegistersAndNothingElse) {
     const std::set<std::uint16_t> swapped{0, 1, 2, 3, 4, 5, 6, 7, 0x18, 0x19};
     for (std::uint16_t a = 0; a < 0x1000; ++a) EXPECT_EQ(motorola_address(a), swapped.contains(a) ? a ^ 1 : a);
