@@ -129,8 +129,11 @@ TEST(StructuredPrm, bad_lengths_stop_the_walk_at_the_bad_block) {
         dp::PrmBlock block{};
         ASSERT_TRUE(walker.next(block));
         ASSERT_EQ(walker.next(block), length == 5 || length == 6) << length;
-        if (length < 5 || length > 244) { EXPECT_EQ(walker.error(), dp::PrmBlockError::length_range); }
-        else if (length > 6) { EXPECT_EQ(walker.error(), dp::PrmBlockError::truncated); }
+        if (length < 5 || length > 244) {
+            EXPECT_EQ(walker.error(), dp::PrmBlockError::length_range);
+        } else if (length > 6) {
+            EXPECT_EQ(walker.error(), dp::PrmBlockError::truncated);
+        }
         if (length < 5 || length > 6) { EXPECT_EQ(walker.offset(), 5u); }
     }
 }
