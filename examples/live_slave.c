@@ -26,7 +26,7 @@ int main(int argc, char **argv) {
     const double seconds = argc > 2 ? atof(argv[2]) : 1e9;
     double lived = 0;
     chip = dpchip_chip_create("vpc3+c");
-    line = dpchip_line_open(argc > 1 ? argv[1] : "pty:", 0);
+    line = dpchip_line_open(argc > 1 ? argv[1] : "pty", 0);
     if (chip == NULL || line == NULL || dpchip_line_attach(line, chip) != DPCHIP_OK) {
         fprintf(stderr, "live_slave: %s\n", dpchip_last_error());
         return 1;

@@ -116,7 +116,7 @@ DPCHIP_API int dpchip_chip_load(dpchip_chip *chip, const void *bytes, size_t siz
 
 /* ---- lines ------------------------------------------------------------------------------------------------------ */
 
-/* "sim:" virtual time; "pty:/tmp/dp0" or "pty:" a new pty; "serial:/dev/ttyUSB0"; "tcp:127.0.0.1:9000".
+/* "sim:" virtual time; "pty" or "pty:/tmp/dp0" a new pty; "serial:/dev/ttyUSB0"; "tcp:127.0.0.1:9000".
    baud in bit/s; 0: 19200 (on sim: 1500000). 45450 means 45.45 kbit/s. */
 DPCHIP_API dpchip_line *dpchip_line_open(const char *uri, uint32_t baud);
 /* Detaches every chip first. NULL is allowed. */
