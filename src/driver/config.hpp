@@ -93,6 +93,8 @@ struct Config {
     bool fail_safe = false;                  ///< Spec_Clear_Mode: Data_Exchange without outputs clears them
     bool set_ext_prm = false;                ///< SAP 53 on: VPC3+B, VPC3+C
     bool spec_prm_buf_mode = false;          ///< Set_Prm without an Aux-Buffer
+    bool prm_cmd_supported = false;          ///< Set_Prm may ask for PrmCmd (octet 9 bit 7): VPC3+B, VPC3+C
+    bool sync_ena = false;                   ///< Set_Prm may ask for isochron mode (octet 9 bit 4); pin 13 is SYNC: VPC3+B, VPC3+C
     bool check_prm_reserved = true;          ///< the chip checks reserved bits of DPV1_Status_2 and 3
     bool check_gc_reserved = true;
     bool dis_start_control = false;          ///< until Set_Prm says otherwise
@@ -128,7 +130,7 @@ enum class ConfigError : std::uint8_t {
     prm_length,          ///< max_prm outside 7..244, or shorter than prm_rules ask for
     diag_length,         ///< max_diag outside 6..244
     ssa_length,          ///< max_ssa outside 4..244
-    not_in_this_chip,    ///< set_ext_prm, dx_int, gc_int or user_timer ask for what the chip does not have
+    not_in_this_chip,    ///< set_ext_prm, prm_cmd_supported, sync_ena, dx_int, gc_int or user_timer ask for what the chip does not have
     ext_prm_buffers,     ///< set_ext_prm together with spec_prm_buf_mode, or without an Aux-Buffer of its own (7.1)
     dout_space,          ///< the RAM ends before the output buffers do: outputs
     din_space,           ///< inputs

@@ -89,6 +89,7 @@ constexpr ConfigError check_chip(const Config& c) {
     const bool has_mode2 = !t.access_violation;  // Mode Register 2: every VPC3+; Mode Register 3: B and C
     const bool has_mode3 = t.isom;
     if (c.set_ext_prm && !t.ext_prm) return ConfigError::not_in_this_chip;
+    if ((c.prm_cmd_supported || c.sync_ena) && !has_mode3) return ConfigError::not_in_this_chip;
     if (c.user_timer != UserTimer::off && !t.user_timer) return ConfigError::not_in_this_chip;
     if (c.dx_int == DxInt::always && !has_mode2) return ConfigError::not_in_this_chip;
     if (c.dx_int == DxInt::on_change && !has_mode3) return ConfigError::not_in_this_chip;

@@ -58,6 +58,7 @@ std::uint8_t Vpc3<Bus, App, N>::mode2() const {
     unsigned v = 0;
     if (config_.ram == RamSize::bytes_4096) v |= m::mode_4kb;
     if (!config_.check_prm_reserved && has_mode3()) v |= m::no_check_prm_reserved;
+    if (config_.sync_ena) v |= m::sync_ena;
     if (config_.dx_int == DxInt::always) v |= m::dx_int_mode;
     if (!config_.check_gc_reserved) v |= m::no_check_gc_reserved;
     if (config_.gc_int == GcInt::chip_default || config_.gc_int == GcInt::every) v |= m::gc_int_mode;
@@ -88,6 +89,7 @@ void Vpc3<Bus, App, N>::write_registers() {
     if (c.set_ext_prm) mode0 |= m0::set_ext_prm_supported;
     if (c.spec_prm_buf_mode) mode0 |= m0::spec_prm_buf_mode;
     if (c.fail_safe) mode0 |= m0::spec_clear_mode;
+    if (c.prm_cmd_supported) mode0 |= m0::prm_cmd_supported;
 
     write_word(ctl::int_req_reg_low, 0);
     write_word(ctl::int_ack_reg_low, 0xFFFF);

@@ -128,6 +128,7 @@ TEST(Layout, EveryRefusalNamesWhatIsAtFault) {
         {"GC_Int on an APC3", [](Config& c) { c.variant = Variant::apc3; c.ram = RamSize::bytes_1536; c.gc_int = GcInt::every; }, ConfigError::not_in_this_chip},
         {"Mode 3 on step A", [](Config& c) { c.variant = Variant::vpc3a; c.dx_int = DxInt::on_change; }, ConfigError::not_in_this_chip},
         {"SAP 53 on step A", [](Config& c) { c.variant = Variant::vpc3a; c.set_ext_prm = true; }, ConfigError::not_in_this_chip},
+        {"PrmCmd on an APC3", [](Config& c) { c.variant = Variant::apc3; c.ram = RamSize::bytes_1536; c.prm_cmd_supported = true; }, ConfigError::not_in_this_chip},
         {"SAP 53, one Aux", [](Config& c) { c.set_ext_prm = true; c.aux = AuxUse::all_on_1; }, ConfigError::ext_prm_buffers},
         {"SAP 53, special buffer", [](Config& c) { c.set_ext_prm = true; c.spec_prm_buf_mode = true; }, ConfigError::ext_prm_buffers},
         // Space: 2048 - 64 - 8 octets are there; the lengths below end in the buffer that is named.

@@ -183,6 +183,8 @@ TEST_F(Driver, ModeRegistersSayWhatTheConfigSays) {
         {"fail safe", [](Config& c) { c.fail_safe = true; }, 0x07, 0x21},
         {"special buffer", [](Config& c) { c.spec_prm_buf_mode = true; }, 0x07, 0x11},
         {"SAP 53", [](Config& c) { c.set_ext_prm = true; }, 0x07, 0x09},
+        {"PrmCmd", [](Config& c) { c.prm_cmd_supported = true; }, 0x07, 0x41},
+        {"isochron", [](Config& c) { c.sync_ena = true; }, 0x0C, 0x11},
         {"SAP 53", [](Config& c) { c.set_ext_prm = true; }, 0x04, 0xB0},
         {"timer", [](Config& c) { c.user_timer = UserTimer::ms_10; }, 0x07, 0x05},
         {"timer", [](Config& c) { c.user_timer = UserTimer::ms_1; }, 0x04, 0xE0},

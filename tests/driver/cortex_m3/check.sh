@@ -17,7 +17,7 @@ arm-none-eabi-g++ -mcpu=cortex-m3 -mthumb -Os -std=c++20 -fno-exceptions -fno-rt
     "$here/main.cpp" "$here/startup.cpp" -o "$out/driver.elf"
 
 bad=$(arm-none-eabi-nm -C "$out/driver.elf" | grep -E \
-    ' (_?malloc|_?free|_?calloc|_?realloc|_sbrk)(_r)?$|operator (new|delete)|__cxa_|_Unwind|__gxx_personality|__aeabi_(unwind|[fd](add|sub|rsub|mul|div|cmp|2)|[iu]?l?2[fd]|[iu]2[fd]|l2[fd]|ul2[fd])' || true)
+    ' (_?malloc|_?free|_?calloc|_?realloc|_sbrk)(_r)?$|operator (new|delete)|__cxa_|_Unwind|__gxx_personality|__aeabi_(unwind|[fd](add|sub|rsub|mul|div|cmp|neg|2)|u?[il]2[fd])' || true)
 if [ -n "$bad" ]; then
     echo "the driver must not need these:"
     echo "$bad"

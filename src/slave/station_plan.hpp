@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a GSD and plugged modules to what the driver wants: configuration octets, rules for Set_Prm, buffer lengths.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <dpchip/core/clock.hpp>
+#include <dpchip/driver/config.hpp>
+#include <dpchip/gsd/configuration.hpp>
+#include <dpchip/gsd/gsd.hpp>
+#include <dpchip/regmap/options.hpp>
+#include <dpchip/regmap/variant.hpp>
+
+namespace dpchip::slave {
+
+/// What a virtual slave is made of, besides its GSD.
+struct Setup {
+    std::string name;                  ///< for people; empty: the GSD's Model_Name
+    std::vector<std::string> modules;  ///< as gsd::configure takes them; empty: the preset or only module
+    std::uint8_t address = 126;
+    regmap::Variant variant = regmap::Variant::vpc3c;
+    regmap::Options options{};         ///< of the chip's model
+    std::string io = "echo";
+    std::optional<std::uint8_t> min_tsdr{};              ///< bit times; else the chip's default
+    bool no_add_change = false;                          ///< Set_Slave_Add has locked the address before
+    driver::CfgPolicy cfg_policy = driver::CfgPolicy::plugged;
+    core::Clock clock{};                                 ///< the crystal against line time
+    core::Ticks firmware_delay{};                        ///< from X/INT to the interrupt routine
+    std::uint16_t user_watchdog = 0;                     ///< R_User_WD_Value; 0: off
+};
+
+/// User_Prm_Data rules with everything their views point to. Stays where it is.
+class OwnedPrmRules {
+public:
+    OwnedPrmRules() = default;
+    OwnedPrmRules(const gsd::Gsd& gsd, const gsd::Configuration& configuration, bool ext_prm);
+    OwnedPrmRules(OwnedPrmRules&&) = default;
+    OwnedPrmRules& operator=(OwnedPrmRules&&) = default;
+    OwnedPrmRules(const OwnedPrmRules&) = delete;
+    OwnedPrmRules& operator=(const OwnedPrmRules&) = delete;
+
+    const driver::PrmRules& rules() const { return rules_; }
+    /// Bits of an octet that may be 1 in a good telegram; 0 beyond the end.
+    std::uint8_t possible_bits(std::size_t offset) const;
+
+private:
+    std::vector<driver::PrmConstant> constants_;
+    std::vector<driver::PrmRange> ranges_;
+    std::vector<driver::PrmValue> values_;
+    std::vector<std::uint8_t> possible_;
+    driver::PrmRules rules_{};
+};
+
+/// A station ready to be configured. The driver's views point into it: it must stay alive as long as the driver.
+struct StationPlan {
+    gsd::Configuration configuration;
+    OwnedPrmRules prm, ext_prm;
+    driver::Config driver;
+
+    /// Throws GsdError for modules, SlaveError for address, chip and RAM.
+    StationPlan(const gsd::Gsd& gsd, const Setup& setup);
+};
+
+}  // namespace dpchip::slave

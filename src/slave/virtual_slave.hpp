@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// A complete DP slave in software: a chip, its firmware (the driver), an identity (its GSD) and something to do (I/O).
+// It is a station of a segment; nothing it does after construction allocates.
+//
+// The firmware runs firmware_delay after X/INT has gone active, at one tick: its accesses to the chip take no time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <dpchip/chip/chip.hpp>
+#include <dpchip/core/clock.hpp>
+#include <dpchip/driver/vpc3.hpp>
+#include <dpchip/fdl/transmission.hpp>
+#include <dpchip/gsd/gsd.hpp>
+#include <dpchip/slave/error.hpp>
+#include <dpchip/slave/io_behaviour.hpp>
+#include <dpchip/slave/station_plan.hpp>
+
+namespace dpchip::slave {
+
+using core::Ticks;
+
+/// What has happened since power-up.
+struct Counters {
+    std::uint64_t exchanges{};          ///< Data_Exchange answers with inputs; without inputs, outputs taken
+    std::uint64_t set_prm{};            ///< Set_Prm heard
+    std::uint64_t prm_refused{};        ///< of these, refused by the firmware
+    std::uint64_t chk_cfg{};
+    std::uint64_t cfg_refused{};
+    std::uint64_t slave_diag{};
+    std::uint64_t global_control{};     ///< obeyed
+    std::uint64_t set_slave_add{};      ///< obeyed
+    std::uint64_t outputs_cleared{};    ///< by power-up, Clear_Data, fail safe or LEAVE-MASTER
+    std::uint64_t data_exch_entered{};
+    std::uint64_t data_exch_left{};
+    std::uint64_t watchdog_timeouts{};  ///< of the times it left: the master was silent
+    std::uint64_t baud_rates_found{};
+    std::uint64_t interrupts{};         ///< calls of the interrupt routine
+};
+
+/// What is to be kept over power-down: Set_Slave_Add's business.
+struct StoredAddress {
+    std::uint8_t address{};
+    bool no_add_change{};
+};
+
+/// One virtual slave. It neither moves nor copies: the firmware holds on to it.
+class VirtualSlave {
+public:
+    /// Powers the slave up at line time setup.clock's origin. Throws GsdError for modules and parameters, SlaveError for
+    /// the rest. `gsd` is not needed afterwards.
+    VirtualSlave(const gsd::Gsd& gsd, const Setup& setup);
+    VirtualSlave(const VirtualSlave&) = delete;
+    VirtualSlave& operator=(const VirtualSlave&) = delete;
+
+    // ---- a segment::Station, in line time -----------------------------------------------------------------------
+    Ticks next() const;
+    void advance(Ticks to);
+    void hear(const fdl::Transmission& heard);
+    void hear_character(const fdl::Character& character);
+    void carrier(Ticks at);
+    bool take(fdl::Transmission& sent);
+    void sent(Ticks at);
+    bool hears_all() const { return chip_.hears_all(); }
+    std::uint8_t address() const { return chip_.address(); }
+
+    // ---- the process behind it ----------------------------------------------------------------------------------
+    std::span<const std::uint8_t> inputs() const { return {inputs_.data(), driver_.inputs()}; }
+    std::span<const std::uint8_t> outputs() const { return {outputs_.data(), driver_.outputs()}; }
+    /// True while the outputs are those of a master, and not cleared ones.
+    bool outputs_valid() const { return outputs_valid_; }
+    const IoBehaviour& io() const { return io_; }
+    void set_io(const IoBehaviour& io);
+    /// As the driver's set_diagnosis().
+    driver::DiagResult set_diagnosis(std::span<const std::uint8_t> ext_diag, driver::DiagFlags flags = {});
+    /// The user wants new parameters: to WAIT-PRM.
+    void leave_master() { driver_.leave_master(); run_firmware_if_due(); }
+    /// Go_Offline and Start again.
+    void restart() { driver_.restart(); run_firmware_if_due(); }
+
+    // ---- to look at ---------------------------------------------------------------------------------------------
+    const std::string& name() const { return name_; }
+    const Counters& counters() const { return counters_; }
+    const StoredAddress& stored_address() const { return stored_; }
+    chip::DpState dp_state() const { return chip_.dp_state(); }
+    chip::WdState wd_state() const { return chip_.wd_state(); }
+    /// Present baud rate; nothing while searching.
+    std::optional<fdl::BaudCode> baud() const;
+    /// Master that owns the slave, 255: none.
+    std::uint8_t owner() const { return chip_.owner(); }
+    std::uint16_t ident() const { return plan_.driver.ident; }
+    const StationPlan& plan() const { return plan_; }
+    chip::Chip<>& chip() { return chip_; }
+    const chip::Chip<>& chip() const { return chip_; }
+
+private:
+    struct Bus {
+        chip::Chip<>* chip;
+        std::uint8_t read(std::uint16_t a) { return chip->read(a); }
+        void write(std::uint16_t a, std::uint8_t v) { chip->write(a, v); }
+        void read_block(std::uint16_t a, std::span<std::uint8_t> out) { chip->read_block(a, out); }
+        void write_block(std::uint16_t a, std::span<const std::uint8_t> in) { chip->write_block(a, in); }
+    };
+    /// The application on top of the driver.
+    struct Firmware : driver::Events {
+        VirtualSlave* slave = nullptr;
+        void prm_refused(driver::PrmFault) { ++slave->counters_.prm_refused; }
+        driver::Verdict set_ext_prm(std::span<const std::uint8_t> octets);
+        void cfg_refused() { ++slave->counters_.cfg_refused; }
+        void data_exch_entered();
+        void data_exch_left() { ++slave->counters_.data_exch_left; }
+        void dx_out();
+        void wd_dp_control_timeout() { ++slave->counters_.watchdog_timeouts; }
+        void baud_rate_detect(std::uint8_t) { ++slave->counters_.baud_rates_found; }
+        void new_gc_command(std::uint8_t) { ++slave->counters_.global_control; }
+        void new_ssa_data(const dp::SetSlaveAdd& ssa);
+    };
+
+    void step(Ticks local);
+    void run_firmware_if_due();
+    void write_inputs();
+    void count_request(const fdl::Transmission& heard);
+    void count_answer(const fdl::Transmission& answer);
+
+    StationPlan plan_;
+    std::string name_;
+    IoBehaviour io_;
+    core::Clock clock_;
+    Ticks firmware_delay_;
+    Ticks firmware_due_ = core::kNever;  // local time
+    Ticks line_now_;
+    bool drifts_;                        // the crystal is not the line's: times are converted
+    bool outputs_valid_ = false;
+    std::uint64_t answers_ = 0;
+    Counters counters_{};
+    StoredAddress stored_{};
+    std::array<std::uint8_t, 244> inputs_{}, outputs_{};
+    chip::Chip<> chip_;
+    Firmware firmware_;
+    driver::Vpc3<Bus, Firmware> driver_;
+};
+
+}  // namespace dpchip::slave
