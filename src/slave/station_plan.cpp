@@ -23,7 +23,7 @@ std::uint8_t clamp_octets(std::uint64_t wanted, unsigned low, unsigned high) {
     return static_cast<std::uint8_t>(std::clamp<std::uint64_t>(wanted, low, high));
 }
 
-void check_address(const gsd::Gsd& gsd, const Setup& setup) {
+void check_address(const gsd::Gsd& gsd, const SlaveSetup& setup) {
     if (setup.address > 126)
         throw SlaveError{SlaveError::Kind::address, "station address " + std::to_string(setup.address) + ": 0 to 126 are possible"};
     if (setup.address == 126 && !gsd.set_slave_add)
@@ -96,7 +96,7 @@ std::uint8_t OwnedPrmRules::possible_bits(std::size_t offset) const {
     return offset < possible_.size() ? possible_[offset] : std::uint8_t{0};
 }
 
-StationPlan::StationPlan(const gsd::Gsd& gsd, const Setup& setup) {
+StationPlan::StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup) {
     check_address(gsd, setup);
     configuration = gsd::configure(gsd, setup.modules);
     prm = OwnedPrmRules{gsd, configuration, false};

@@ -18,7 +18,7 @@
 namespace dpchip::slave {
 
 /// What a virtual slave is made of, besides its GSD.
-struct Setup {
+struct SlaveSetup {
     std::string name;                  ///< for people; empty: the GSD's Model_Name
     std::vector<std::string> modules;  ///< as gsd::configure takes them; empty: the preset or only module
     std::uint8_t address = 126;
@@ -62,7 +62,7 @@ struct StationPlan {
     driver::Config driver;
 
     /// Throws GsdError for modules, SlaveError for address, chip and RAM.
-    StationPlan(const gsd::Gsd& gsd, const Setup& setup);
+    StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup);
 };
 
 }  // namespace dpchip::slave

@@ -9,7 +9,7 @@
 
 namespace dpchip::slave {
 
-VirtualSlave::VirtualSlave(const gsd::Gsd& gsd, const Setup& setup)
+VirtualSlave::VirtualSlave(const gsd::Gsd& gsd, const SlaveSetup& setup)
     : plan_{gsd, setup}, name_{setup.name.empty() ? gsd.model_name : setup.name}, io_{setup.io}, clock_{setup.clock},
       firmware_delay_{setup.firmware_delay}, line_now_{setup.clock.line(Ticks{0})},
       drifts_{setup.clock.ppb() != 0 || setup.clock.line(Ticks{0}) != Ticks{0}}, chip_{setup.variant, setup.options},

@@ -54,7 +54,7 @@ class VirtualSlave {
 public:
     /// Powers the slave up at line time setup.clock's origin. Throws GsdError for modules and parameters, SlaveError for
     /// the rest. `gsd` is not needed afterwards.
-    VirtualSlave(const gsd::Gsd& gsd, const Setup& setup);
+    VirtualSlave(const gsd::Gsd& gsd, const SlaveSetup& setup);
     VirtualSlave(const VirtualSlave&) = delete;
     VirtualSlave& operator=(const VirtualSlave&) = delete;
 
