@@ -188,7 +188,11 @@ bool indicates_changed_group(Bench& b) {
     b.acknowledge();
     EXPECT_EQ(b.ask(kSyncGroup1), kSilence);
     EXPECT_EQ(b.irr() & ~irq::new_gc_command, 0);
-    return b.irr() != 0;
+    const bool indicated = b.irr() != 0;
+    b.acknowledge();
+    EXPECT_EQ(b.ask(kSyncGroup1), kSilence);
+    EXPECT_EQ(b.irr(), 0) << "neither command nor group changed any more";
+    return indicated;
 }
 
 // proves: VPC3C 5.1.4-07..08, E027

@@ -185,5 +185,60 @@ TEST_P(Checks, C018_a_request_of_another_master_in_between_makes_the_same_octets
     EXPECT_EQ(b.irr(), irq::dx_out);
 }
 
+// ---- what the ids leave open: the frame count bit (reference 2.5)
+// ------------------------------------------------------
+
+/// Data_Exchange of the owner with the given function code octet, verbatim; true when the outputs were taken.
+bool is_new(Bench& b, std::uint8_t fc) {
+    b.acknowledge();
+    EXPECT_EQ(b.ask_verbatim(text(b.request(2, fc, std::nullopt, {0x12, 0x34}))), kInputs);
+    return b.irr() == irq::dx_out;
+}
+
+TEST_P(Checks, the_frame_count_bit_tells_retries_from_new_requests) {
+    Bench b{recipe(), Stage::p2};  // the last request was 7D
+    EXPECT_TRUE(is_new(b, 0x5D));
+    EXPECT_FALSE(is_new(b, 0x5D));
+    EXPECT_FALSE(is_new(b, 0x5C)) << "the priority does not matter";
+    EXPECT_TRUE(is_new(b, 0x7D));
+    EXPECT_TRUE(is_new(b, 0x6D)) << "FCV = 0 is always new";
+    EXPECT_TRUE(is_new(b, 0x6D));
+    EXPECT_FALSE(is_new(b, 0x7D)) << "FCV = 0, FCB = 1 counts as FCB 1";
+    EXPECT_TRUE(is_new(b, 0x5D));
+    EXPECT_TRUE(is_new(b, 0x4D)) << "FCV = 0, FCB = 0 forgets";
+    EXPECT_TRUE(is_new(b, 0x5D));
+    EXPECT_TRUE(is_new(b, 0x4D));
+    EXPECT_TRUE(is_new(b, 0x7D));
+}
+
+TEST_P(Checks, telegrams_without_frame_count_leave_it_alone) {
+    Bench b{recipe(), Stage::p2};
+    EXPECT_TRUE(is_new(b, 0x5D));
+    EXPECT_EQ(b.ask_verbatim(kFdlStatus), kFdlStatusOk);
+    EXPECT_FALSE(is_new(b, 0x5D));
+    EXPECT_EQ(b.ask_verbatim("68 07 07 68 FF 82 46 3A 3E 00 00 3F 16"), kSilence);
+    EXPECT_FALSE(is_new(b, 0x5D));
+    EXPECT_EQ(b.ask_verbatim("10 08 02 49 52 16"), kSilence);
+    EXPECT_FALSE(is_new(b, 0x5D));
+    EXPECT_EQ(b.ask_verbatim("68 05 05 68 07 02 7D 12 34 CC 16"), kSilence) << "for station 7";
+    EXPECT_FALSE(is_new(b, 0x5D));
+}
+
+TEST_P(Checks, a_repetition_of_a_refused_request_is_processed_anew) {
+    Bench b{recipe(), Stage::p1};
+    EXPECT_EQ(b.ask_verbatim("68 07 07 68 88 82 7D 3A 3E 02 00 01 16"), kRs);
+    EXPECT_EQ(b.ask_verbatim("68 07 07 68 88 82 7D 3E 3E 11 21 35 16"), kSc)
+        << "not a retry: the last answer was negative";
+    EXPECT_EQ(b.irr(), irq::new_cfg_data);
+}
+
+TEST_P(Checks, a_status_request_in_between_does_not_turn_a_refused_request_into_a_retry) {
+    Bench b{recipe(), Stage::p1};
+    EXPECT_EQ(b.ask_verbatim("68 07 07 68 88 82 7D 3A 3E 02 00 01 16"), kRs);
+    EXPECT_EQ(b.ask_verbatim(kFdlStatus), kFdlStatusOk);
+    EXPECT_EQ(b.ask_verbatim("68 07 07 68 88 82 7D 3E 3E 11 21 35 16"), kSc);
+    EXPECT_EQ(b.irr(), irq::new_cfg_data);
+}
+
 }  // namespace
 }  // namespace dpchip::checks

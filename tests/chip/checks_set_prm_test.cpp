@@ -255,5 +255,41 @@ TEST_P(Checks, C051_a_faulty_Set_Prm_of_the_owner_ends_data_exchange) {
     EXPECT_EQ(b.diag(), "68 0B 0B 68 82 88 08 3E 3C 42 05 00 FF 47 11 2A 16");
 }
 
+// ---- what the ids leave open (reference 3.4.3, 3.4.4) --------------------------------------------------------------
+
+TEST_P(Checks, a_good_Set_Prm_clears_the_faults_reported_before) {
+    Recipe r = recipe();
+    r.mode0 = static_cast<std::uint16_t>(r.mode0 & ~regmap::mode0::sync_supported);
+    Bench b{r, Stage::p0};
+    EXPECT_EQ(b.ask("68 0C 0C 68 88 82 5D 3D 3E B8 02 05 0B 47 11 01 05 16"), "E5");
+    EXPECT_EQ(b.diag(), "68 0B 0B 68 82 88 08 3E 3C 52 05 00 FF 47 11 3A 16");
+    EXPECT_EQ(b.ask(kPrm), "E5");
+    EXPECT_EQ(b.diag(), kDiagWaitCfg);
+    EXPECT_EQ(b.ask(kCfg), "E5");
+    EXPECT_EQ(b.read(control::user_cfg_data_not_okay), 0x00);
+    EXPECT_EQ(b.diag(), kDiagCfgFault);
+    EXPECT_EQ(b.ask(kPrm), "E5");
+    EXPECT_EQ(b.diag(), kDiagWaitCfg);
+}
+
+TEST_P(Checks, minTSDR_of_Set_Prm_is_kept_when_zero_and_eleven_at_least) {
+    Recipe r = recipe();
+    r.min_tsdr = 20;
+    Bench b{r, Stage::p0};
+    const auto delay_after = [&b](std::uint8_t min_tsdr) {
+        EXPECT_EQ(b.ask(b.request(2, 0x5D, 0x3D, {0x88, 0x02, 0x05, min_tsdr, 0x47, 0x11, 0x00})), kSc);
+        EXPECT_EQ(b.ask(kFdlStatus), kFdlStatusOk);
+        return (b.last_answer().start - b.request_end()) / b.bit();
+    };
+    EXPECT_EQ(delay_after(0), 20);
+    EXPECT_EQ(delay_after(30), 30);
+    EXPECT_EQ(delay_after(0), 30);
+    EXPECT_EQ(delay_after(255), 255);
+    EXPECT_EQ(delay_after(1), 11);
+    EXPECT_EQ(delay_after(10), 11);
+    EXPECT_EQ(b.ask("68 0C 0C 68 88 82 5D 3D 3E 40 01 01 00 47 11 00 7C 16"), kSc);
+    EXPECT_EQ(delay_after(0), 11) << "kept over LEAVE-MASTER";
+}
+
 }  // namespace
 }  // namespace dpchip::checks
