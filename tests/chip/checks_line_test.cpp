@@ -240,5 +240,14 @@ TEST_P(Checks, a_status_request_in_between_does_not_turn_a_refused_request_into_
     EXPECT_EQ(b.irr(), irq::new_cfg_data);
 }
 
+TEST_P(Checks, a_retry_repeats_the_inputs_and_another_master_with_the_same_frame_count_bit_gets_new_ones) {
+    constexpr std::string_view kOld = "68 07 07 68 82 88 08 3E 38 AB CD 00 16";
+    Bench b{recipe(), Stage::p2};
+    EXPECT_EQ(b.ask_verbatim("68 05 05 68 88 82 5D 38 3E DD 16"), kOld);
+    b.give_inputs("EF 01");
+    EXPECT_EQ(b.ask_verbatim("68 05 05 68 88 82 5D 38 3E DD 16"), kOld);
+    EXPECT_EQ(b.ask_verbatim("68 05 05 68 88 83 5D 38 3E DE 16"), "68 07 07 68 83 88 08 3E 38 EF 01 79 16");
+}
+
 }  // namespace
 }  // namespace dpchip::checks

@@ -291,5 +291,20 @@ TEST_P(Checks, minTSDR_of_Set_Prm_is_kept_when_zero_and_eleven_at_least) {
     EXPECT_EQ(delay_after(0), 11) << "kept over LEAVE-MASTER";
 }
 
+TEST_P(Checks, LEAVE_MASTER_drops_parameters_and_configurations_that_wait_for_their_acknowledgement) {
+    Bench b{recipe(), Stage::p0};
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(b.ask(kPrm10), "E5");
+    EXPECT_EQ(b.read(control::user_prm_data_okay), regmap::acknowledge::conflict);
+    EXPECT_EQ(b.ask(kCfg), "E5");
+    EXPECT_EQ(b.irr(), irq::new_prm_data | irq::new_cfg_data);
+    EXPECT_EQ(b.ask("68 0C 0C 68 88 82 5D 3D 3E 40 01 01 00 47 11 00 7C 16"), "E5");
+    EXPECT_EQ(b.irr(), irq::dx_out);
+    EXPECT_EQ(b.read(control::user_prm_data_okay), regmap::acknowledge::not_allowed);
+    EXPECT_EQ(b.read(control::user_cfg_data_okay), regmap::acknowledge::not_allowed);
+    EXPECT_EQ(b.ask(kPrm10), "E5");
+    EXPECT_EQ(b.read(control::user_prm_data_okay), regmap::acknowledge::finished) << "the counters began at 0";
+    EXPECT_EQ(b.dp_state(), kWaitCfg);
+}
+
 }  // namespace
 }  // namespace dpchip::checks
