@@ -32,6 +32,13 @@ void check_address(const gsd::Gsd& gsd, const SlaveSetup& setup) {
                              " does not know Set_Slave_Add (Set_Slave_Add_supp = 0)"};
 }
 
+/// With Spec_Clear_Mode the chip refuses a Set_Prm that enables DP-V1 without Fail_Safe (7.1). Files exist that promise
+/// Fail_Safe and give just such parameters as their default: their own parameters must do, so the mode stays off.
+bool accepts_fail_safe(const gsd::Gsd& gsd, const OwnedPrmRules& prm) {
+    const std::uint8_t status_1 = prm.default_octet(0);
+    return gsd.fail_safe_required || (status_1 & dp::kDpv1Enable) == 0 || (status_1 & dp::kFailSafe) != 0;
+}
+
 /// RAM sizes of a chip, the one after reset first.
 std::vector<driver::RamSize> ram_sizes(regmap::Variant variant) {
     const regmap::Traits& t = regmap::traits(variant);
@@ -64,6 +71,7 @@ void choose_lengths(driver::Config& c, const gsd::Configuration& configuration) 
 OwnedPrmRules::OwnedPrmRules(const gsd::Gsd& gsd, const gsd::Configuration& configuration, bool ext_prm) {
     const auto telegram = ext_prm ? gsd::PrmTelegram::set_ext_prm : gsd::PrmTelegram::set_prm;
     const gsd::UserPrmData data = gsd::user_prm_data(gsd, configuration, {}, telegram);
+    defaults_ = data.octets;
     for (std::size_t i = 0; i < data.octets.size(); ++i) {
         const auto fixed = static_cast<std::uint8_t>(~data.variable[i]);
         possible_.push_back(static_cast<std::uint8_t>(data.octets[i] | data.variable[i]));
@@ -96,6 +104,10 @@ std::uint8_t OwnedPrmRules::possible_bits(std::size_t offset) const {
     return offset < possible_.size() ? possible_[offset] : std::uint8_t{0};
 }
 
+std::uint8_t OwnedPrmRules::default_octet(std::size_t offset) const {
+    return offset < defaults_.size() ? defaults_[offset] : std::uint8_t{0};
+}
+
 StationPlan::StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup) {
     check_address(gsd, setup);
     configuration = gsd::configure(gsd, setup.modules);
@@ -113,7 +125,7 @@ StationPlan::StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup) {
     c.no_add_change = setup.no_add_change;
     c.sync_supported = gsd.sync_mode;
     c.freeze_supported = gsd.freeze_mode;
-    c.fail_safe = gsd.fail_safe;
+    c.fail_safe = gsd.fail_safe && accepts_fail_safe(gsd, prm);
     c.user_watchdog = setup.user_watchdog;
     if (setup.min_tsdr) c.min_tsdr = *setup.min_tsdr;
     // Octets 8 and 9 of Set_Prm are the station's own when it is no DP-V1 slave; the chip must not look into them.

@@ -46,12 +46,14 @@ public:
     const driver::PrmRules& rules() const { return rules_; }
     /// Bits of an octet that may be 1 in a good telegram; 0 beyond the end.
     std::uint8_t possible_bits(std::size_t offset) const;
+    /// An octet as the GSD gives it by default; 0 beyond the end.
+    std::uint8_t default_octet(std::size_t offset) const;
 
 private:
     std::vector<driver::PrmConstant> constants_;
     std::vector<driver::PrmRange> ranges_;
     std::vector<driver::PrmValue> values_;
-    std::vector<std::uint8_t> possible_;
+    std::vector<std::uint8_t> possible_, defaults_;
     driver::PrmRules rules_{};
 };
 
