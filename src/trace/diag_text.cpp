@@ -11,14 +11,10 @@ std::string master_text(std::uint8_t master) {
     return master == dp::kNoMaster ? std::string{"no master"} : std::string{"master "} + std::to_string(master);
 }
 
-std::string bits_text(const dp::DiagBlock& block, std::uint8_t station, const DeviceTexts* texts) {
+std::string device_text(const dp::DiagBlock& block, std::uint8_t station, const DeviceTexts* texts) {
     std::string words;
-    const auto data = block.data();
-    for (std::size_t bit = 0; bit < 8 * data.size(); ++bit) {
-        if (!core::bit(data[bit / 8], static_cast<unsigned>(bit % 8))) continue;
-        const std::string text = texts != nullptr ? texts->unit_diag_bit(station, bit) : std::string{};
-        if (!text.empty()) add_word(words, std::string{"bit "} + std::to_string(bit) + " \"" + text + '"');
-    }
+    if (texts != nullptr)
+        for (const std::string& text : texts->device_diag(station, block.data())) add_word(words, text);
     return words;
 }
 
@@ -42,8 +38,8 @@ std::string block_text(const dp::DiagBlock& block, std::uint8_t station, const D
     const std::string octets = hex_row(block.octets);
     switch (block.kind) {
     case dp::DiagBlockKind::device: {
-        const std::string bits = bits_text(block, station, texts);
-        return bits.empty() ? octets : octets + ": " + bits;
+        const std::string words = device_text(block, station, texts);
+        return words.empty() ? octets : octets + ": " + words;
     }
     case dp::DiagBlockKind::identifier: return octets + ": " + identifier_text(block);
     case dp::DiagBlockKind::channel: return octets + ": " + channel_text(block, station, texts);
@@ -58,7 +54,7 @@ void blocks_text(std::span<const std::uint8_t> ext, std::uint8_t station, const 
         const std::string words = block_text(block, station, texts);
         text.details.push_back(std::string{dp::name(block.kind)} + ' ' + words);
         if (block.kind == dp::DiagBlockKind::channel) add_word(text.words, channel_text(block, station, texts));
-        else if (block.kind == dp::DiagBlockKind::device) add_word(text.words, bits_text(block, station, texts));
+        else if (block.kind == dp::DiagBlockKind::device) add_word(text.words, device_text(block, station, texts));
     }
     if (walker.error() != dp::DiagError::none)
         text.details.push_back(std::string{"damaged block ("} + dp::name(walker.error()) + ") " + hex_row(ext.subspan(walker.offset())));

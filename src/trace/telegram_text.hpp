@@ -15,12 +15,12 @@
 
 namespace dpchip::trace {
 
-/// Texts that only a device's GSD knows. Ask per station; an empty string means that there is none.
+/// Texts that only a device's GSD knows, by station. Empty where there are none. GsdTexts is one.
 class DeviceTexts {
 public:
     virtual ~DeviceTexts() = default;
-    /// Bit `bit` of the device-related diagnosis of `station`, counted from the first octet behind the block header.
-    virtual std::string unit_diag_bit(std::uint8_t station, std::size_t bit) const = 0;
+    /// What the device-related diagnosis block of `station` says; `data` is what stands behind its header octet.
+    virtual std::vector<std::string> device_diag(std::uint8_t station, std::span<const std::uint8_t> data) const = 0;
     /// Error 16..31 of a channel-related diagnosis.
     virtual std::string channel_error(std::uint8_t station, std::uint8_t error) const = 0;
 };

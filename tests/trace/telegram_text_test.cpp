@@ -111,8 +111,9 @@ TEST(Details, TakeConfigurationsApart) {
 
 class Texts final : public DeviceTexts {
 public:
-    std::string unit_diag_bit(std::uint8_t station, std::size_t bit) const override {
-        return station == 8 && bit == 9 ? "Fuse blown" : "";
+    std::vector<std::string> device_diag(std::uint8_t station, std::span<const std::uint8_t> data) const override {
+        if (station != 8 || data.size() < 2 || (data[1] & 2) == 0) return {};
+        return {"bit 9 \"Fuse blown\""};
     }
     std::string channel_error(std::uint8_t, std::uint8_t error) const override { return error == 17 ? "Sensor dirty" : ""; }
 };
