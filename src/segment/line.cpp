@@ -183,10 +183,10 @@ void Segment::begin(std::uint8_t f) {
     flight.begun = true;
     for (const ObserverRef& o : observers_) o.see_begin({flight.sent, flight.sender});
     StationSet carrier = heard_last_;
-    carrier |= ears_;
+    add_audience(carrier, flight.sent);
     heard_last_ = {};
     if (flight.sender < taps_.size()) carrier.remove(flight.sender);
-    flight.carrier = carrier;
+    if (delayed_) flight.carrier = carrier;
     if (flight.sent.damaged || delayed_) flight.told.fill(delayed_ ? 0 : 1);
     if (!delayed_) carrier.each([&](StationIndex i) { hear_carrier(i); });
     plan(flight);
@@ -245,10 +245,11 @@ void Segment::wire_due() {
 void Segment::deliver_directly(std::uint8_t f) {
     Flight& flight = flights_[f];
     show(flight);
-    StationSet all = audience(flight.sent);
+    StationSet all;
+    add_audience(all, flight.sent);
     if (flight.sender < taps_.size()) all.remove(flight.sender);
-    heard_last_ = all;
     all.each([&](StationIndex i) { hear_whole(i, flight.sent, {}); });
+    heard_last_ = all;
     release(f);
 }
 
@@ -356,11 +357,12 @@ void Segment::inject(StationIndex sender, const Transmission& t) {
     const Sighting sighting{t, sender};
     for (const ObserverRef& o : observers_) o.see_begin(sighting);
     StationSet carrier = heard_last_;
-    carrier |= ears_;
+    add_audience(carrier, t);
     if (sender < taps_.size()) carrier.remove(sender);
     carrier.each([&](StationIndex i) { hear_carrier(i); });
     for (const ObserverRef& o : observers_) o.see(sighting);
-    StationSet all = t.damaged ? on_ : audience(t);
+    StationSet all;
+    add_audience(all, t);  // again: somebody may have pricked up its ears
     if (sender < taps_.size()) all.remove(sender);
     heard_last_ = all;
     if (t.damaged)

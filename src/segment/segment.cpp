@@ -145,26 +145,33 @@ void Segment::catch_up(StationIndex i) {
     else taps_[i].station.advance(local_time(taps_[i], now_));
 }
 
-bool Segment::concerns(StationIndex i, const fdl::Transmission& t) const { return audience(t).has(i); }
+bool Segment::concerns(StationIndex i, const fdl::Transmission& t) const {
+    StationSet all;
+    add_audience(all, t);
+    return all.has(i);
+}
 
-/// Who hears an undamaged telegram, its sender apart.
-StationSet Segment::audience(const fdl::Transmission& t) const {
-    StationSet all = ears_;
-    std::size_t da = 0;
+/// Adds to `all` who hears `t`, its sender included. The single station comes last: whole sets are copied and joined
+/// in wide steps, and a wide load right behind a narrow store waits for it.
+void Segment::add_audience(StationSet& all, const fdl::Transmission& t) const {
+    std::uint8_t address = kNoAddress;
     switch (t.octets[0]) {
     case fdl::kSd1:
-    case fdl::kSd3: da = 1; break;
-    case fdl::kSd2: da = 4; break;
-    default: return all;
+    case fdl::kSd3: address = t.octets[1] & 0x7Fu; break;
+    case fdl::kSd2: address = t.octets[4] & 0x7Fu; break;
+    default: break;
     }
-    const std::uint8_t address = t.octets[da] & 0x7Fu;
-    if (address == fdl::kBroadcast) return on_;
+    if (t.damaged || address == fdl::kBroadcast) {
+        all |= on_;
+        return;
+    }
+    all |= ears_;
+    if (address == kNoAddress) return;
     const StationIndex i = at_[address];
     if (i < kMaxStations) all.add(i);
     else if (i == kSeveral)
         for (std::size_t k = 0; k < taps_.size(); ++k)
             if (taps_[k].on && taps_[k].address == address) all.add(static_cast<StationIndex>(k));
-    return all;
 }
 
 // ---- time --------------------------------------------------------------------------------------------------------

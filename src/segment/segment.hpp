@@ -5,7 +5,8 @@
 // what they begin to send. Nothing depends on how far advance() is asked to go at a time.
 //
 // An undamaged telegram reaches the station it addresses (all of them for 127) and those that hear everything, in one
-// call each. Anything damaged is heard by everybody, character by character. Nobody hears itself.
+// call each. Anything damaged is heard by everybody, character by character. Nobody hears itself. Those who will hear
+// it, and those who heard the telegram before it and may be about to answer, are told when it begins.
 // When a collision spoils a telegram after it has begun, its earlier characters are handed over at that moment, with
 // their own times.
 //
@@ -161,7 +162,7 @@ private:
     void catch_up(StationIndex i);
     void stations_due(StationIndex first);
     bool concerns(StationIndex i, const fdl::Transmission& t) const;
-    StationSet audience(const fdl::Transmission& t) const;
+    void add_audience(StationSet& all, const fdl::Transmission& t) const;
 
     // transmissions
     std::uint8_t allocate();

@@ -108,8 +108,8 @@ TEST_F(PortTest, sends_garbage_as_damaged_characters_and_the_next_telegram_after
     line.advance(1_ms);
     const std::vector<std::uint8_t> bad{0x10, 3, 2, 0x7D, 0, 0x16};
     send(bad);
-    EXPECT_EQ(slave.told.size(), 6u);
-    EXPECT_EQ(slave.told[3].what, "character 125 faults 0");
+    EXPECT_EQ(slave.told.size(), 7u);
+    EXPECT_EQ(slave.told[4].what, "character 125 faults 0");
     const Ticks end = port.sent_end();
     send(request(3));
     EXPECT_EQ(last_start(), end + kBit * 76);
@@ -124,7 +124,7 @@ TEST_F(PortTest, sends_faults_at_a_tick_of_its_own_choice) {
     line.touch(0);
     line.run(1_ms);
     EXPECT_EQ(record.entries[0].start, 200_us);
-    EXPECT_EQ(slave.told[1].what, "character 3 faults 1");
+    EXPECT_EQ(slave.told[2].what, "character 3 faults 1");
 }
 
 TEST_F(PortTest, refuses_a_second_telegram_while_one_waits_and_sizes_that_do_not_exist) {

@@ -75,8 +75,9 @@ TEST(Dispatch, is_to_the_addressed_station_and_to_those_who_hear_everything) {
     Talker master{.plan = {{10_us, request(3)}}}, addressed{.own = 3, .tsdr_bits = 100}, other{.own = 4}, spy{.ears = true};
     for (Talker* t : {&master, &addressed, &other, &spy}) ASSERT_TRUE(line.attach(*t));
     line.run(15_us + kBit * 66);
-    EXPECT_EQ(addressed.told, (std::vector<test::Told>{{"telegram", 10_us + kBit * 66}}));
-    EXPECT_EQ(spy.told, (std::vector<test::Told>{{"carrier", 10_us}, {"telegram", 10_us + kBit * 66}}));
+    const std::vector<test::Told> expected{{"carrier", 10_us}, {"telegram", 10_us + kBit * 66}};
+    EXPECT_EQ(addressed.told, expected);
+    EXPECT_EQ(spy.told, expected);
     EXPECT_TRUE(other.told.empty());
     EXPECT_TRUE(master.told.empty());
 }
@@ -158,7 +159,8 @@ TEST(Answer, that_has_not_begun_is_given_up_when_somebody_else_sends) {
     ASSERT_TRUE(line.attach(master));
     ASSERT_TRUE(line.attach(slave));
     line.run(1_ms);
-    EXPECT_EQ(slave.count("carrier"), 1u);
+    EXPECT_EQ(slave.count("carrier"), 2u);
+    EXPECT_EQ(slave.count("telegram"), 1u);
     EXPECT_EQ(line.counters().transmissions, 2u);
     EXPECT_EQ(line.counters().collisions, 0u);
 }
@@ -214,7 +216,9 @@ TEST(Collision, in_the_middle_spoils_only_the_characters_it_covers) {
     EXPECT_TRUE(record.entries[0].damaged && record.entries[1].damaged);
     EXPECT_GE(judge.count(segment::Violation::collision), 1u);
     const std::vector<std::uint8_t> sent = request(3);
-    ASSERT_EQ(deaf.told.size(), 6u);  // everybody hears what is damaged
+    ASSERT_EQ(deaf.told.size(), 7u);  // everybody hears what is damaged, from the collision on
+    EXPECT_EQ(deaf.told[0], (test::Told{"carrier", 10_us + kBit * 40}));
+    deaf.told.erase(deaf.told.begin());
     for (std::size_t i = 0; i < 6; ++i) {
         EXPECT_EQ(deaf.told[i].at, 10_us + kBit * (11 * static_cast<std::int64_t>(i + 1)));
         const bool covered = i == 3 || i == 4;  // 40..51 overlaps characters 33..44 and 44..55
@@ -240,7 +244,7 @@ TEST(Propagation, delays_carrier_and_telegram_by_the_distance) {
     ASSERT_TRUE(line.attach(spy, "y", {.position = 0_ns}));
     line.run(1_ms);
     const Ticks end = 10_us + kBit * 66;
-    EXPECT_EQ(slave.told, (std::vector<test::Told>{{"telegram", end + 500_ns}}));
+    EXPECT_EQ(slave.told, (std::vector<test::Told>{{"carrier", 10_us + 500_ns}, {"telegram", end + 500_ns}}));
     const Ticks reply = end + 500_ns + kBit * 50;
     EXPECT_EQ(master.told,
               (std::vector<test::Told>{{"carrier", reply + 500_ns}, {"telegram", reply + kBit * 11 + 500_ns}}));
@@ -271,12 +275,13 @@ TEST(Crystal, converts_between_the_stations_ticks_and_the_lines) {
     line.run(30_ms);
     const core::Clock clock{ppb};
     const Ticks end = 10_ms + kBit * 66;
-    ASSERT_GE(slave.told.size(), 2u);
-    EXPECT_EQ(slave.told[0], (test::Told{"telegram", clock.local(end)}));
+    ASSERT_EQ(slave.told.size(), 3u);
+    EXPECT_EQ(slave.told[0], (test::Told{"carrier", clock.local(10_ms)}));
+    EXPECT_EQ(slave.told[1], (test::Told{"telegram", clock.local(end)}));
     ASSERT_EQ(record.entries.size(), 2u);
     EXPECT_EQ(record.entries[1].start, clock.line(clock.local(end) + kBit * 4000));
     EXPECT_LT(record.entries[1].start, end + kBit * 4000);
-    EXPECT_EQ(slave.told[1], (test::Told{"alarm", 20_ms}));
+    EXPECT_EQ(slave.told[2], (test::Told{"alarm", 20_ms}));
     EXPECT_EQ(slave.count("time ran backwards"), 0u);
 }
 
@@ -394,7 +399,7 @@ TEST(Many, stations_125_answer_in_turn_and_only_the_addressed_one_is_disturbed) 
     line.observe(judge);
     line.advance(at);
     EXPECT_EQ(master.count("telegram"), 375u);
-    for (const Talker& s : slaves) EXPECT_EQ(s.told.size(), 3u);
+    for (const Talker& s : slaves) EXPECT_EQ(s.told.size(), 6u);  // carrier and telegram, its own three times
     EXPECT_TRUE(judge.clean()) << judge.total();
     EXPECT_EQ(judge.answers(), 375u);
 }
@@ -410,9 +415,30 @@ TEST(Disturbance, is_heard_by_everybody_and_refused_when_it_makes_no_sense) {
     EXPECT_FALSE(line.disturb(2_us, kBit, {}));
     EXPECT_TRUE(line.disturb(2_us, kBit, octets, faults));
     line.advance(10_us);
-    const std::vector<test::Told> expected{{"character 85 faults 0", 2_us + kBit * 11}, {"character 170 faults 1", 2_us + kBit * 22}};
+    const std::vector<test::Told> expected{{"carrier", 2_us}, {"character 85 faults 0", 2_us + kBit * 11}, {"character 170 faults 1", 2_us + kBit * 22}};
     EXPECT_EQ(a.told, expected);
     EXPECT_EQ(b.told, expected);
+}
+
+TEST(Finish, ends_a_transmission_before_its_bit_times_are_over_and_tells_its_sender) {
+    struct Hasty : Talker {
+        Ticks over = kNever;
+        void sent(Ticks at) { over = at; }
+    };
+    Segment line;
+    Hasty slave;
+    slave.plan.emplace_back(10_us, test::answer(2, 3, {1, 2, 3}));
+    Talker wire{.ears = true};
+    ASSERT_TRUE(line.attach(wire));
+    ASSERT_TRUE(line.attach(slave));
+    line.advance(12_us);
+    EXPECT_TRUE(line.busy());
+    line.finish(0);  // sends nothing
+    EXPECT_TRUE(line.busy());
+    line.finish(1);
+    EXPECT_FALSE(line.busy());
+    EXPECT_EQ(slave.over, 12_us);
+    EXPECT_EQ(wire.told, (std::vector<test::Told>{{"carrier", 10_us}, {"telegram", 12_us}}));
 }
 
 TEST(Injection, is_heard_at_once_and_answered_on_the_line) {
