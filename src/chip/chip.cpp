@@ -44,10 +44,10 @@ inline constexpr std::size_t kHead = 8, kTail = 4;
 bool plausible(const State& s) {
     const bool machines = BufferSm{s.din_sm}.valid() && BufferSm{s.dout_sm}.valid() && BufferSm{s.dxbout_sm}.valid();
     const bool states = s.dp_state <= DpState::data_exch && s.wd_state <= WdState::dp_control && s.rx_state <= RxState::frame &&
-                        s.bus_mode <= BusMode::motorola && s.answer <= Answer::slave_diag && s.last_answer <= Answer::slave_diag;
+                        s.bus_mode <= BusMode::motorola && s.answer <= Answer::kept && s.last_answer <= Answer::kept;
     const bool rates = static_cast<std::size_t>(s.probe) < fdl::kBaudRates &&
                        (s.baud == fdl::BaudCode::not_found || static_cast<std::size_t>(s.baud) < fdl::kBaudRates);
-    const bool counts = s.rx_count <= fdl::kMaxTelegram && s.tx_count <= fdl::kMaxTelegram && s.prm_counter <= 2 && s.cfg_counter <= 2 &&
+    const bool counts = s.rx_count <= fdl::kMaxTelegram && s.tx_count <= fdl::kMaxTelegram && s.kept_count <= fdl::kMaxTelegram && s.prm_counter <= 2 && s.cfg_counter <= 2 &&
                         s.request_data_at + s.request_length <= fdl::kMaxTelegram && s.leave_after_answer <= 10;
     const bool aux = s.aux_waiting[0] <= AuxUser::cfg && s.aux_waiting[1] <= AuxUser::cfg && s.prm_present <= AuxUser::cfg;
     bool times = s.now >= Ticks{} && s.user_clock_due >= Ticks{} && s.prescaler_origin >= Ticks{} && s.prescaler_origin <= s.now;
@@ -86,7 +86,6 @@ template <class Trace>
 void Chip<Trace>::advance(Ticks to) {
     DPCHIP_ASSERT(to >= c_.s.now);
     ms::run(c_, to);
-    c_.s.next = ms::next(c_.s);
 }
 
 template <class Trace>

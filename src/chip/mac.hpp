@@ -2,6 +2,7 @@
 // Medium access: which telegrams concern the chip, repetitions by the frame count bit (2.1, 5.4; reference 2.4 to 2.7).
 #pragma once
 
+#include <dpchip/chip/idle_timer.hpp>
 #include <dpchip/chip/wd_sm.hpp>
 #include <dpchip/fdl/telegram.hpp>
 
@@ -66,6 +67,7 @@ void deliver(C& c, const fdl::Telegram& t) {
 
     c.s.retry = is_retry(c.s, t) ? 1 : 0;
     c.s.request_end = c.s.now;
+    c.s.answer_at = idle::answer_at(c);  // with the minTSDR of now, whatever this telegram sets
     c.s.request_da = t.da;
     c.s.request_sa = t.sa;
     c.s.request_fc = t.fc.octet;

@@ -82,7 +82,10 @@ void telegram(C& c) {
         c.s.last_answer = answer;
     }
     if (c.s.ram_access_violation != 0) request_offline(c);
-    if (answer == Answer::none || c.s.suppress_answer != 0) return cycle_over(c);
+    if (answer == Answer::none || c.s.suppress_answer != 0) {
+        sap_list::given_up(c);
+        return cycle_over(c);
+    }
     transmitter::plan(c, answer);
 }
 
@@ -90,6 +93,7 @@ template <class C>
 void answer_end(C& c) {
     transmitter::end(c);
     if (c.s.answer == Answer::slave_diag) slave_diag::sent(c);
+    if (c.s.answer == Answer::response) sap_list::sent(c);
     cycle_over(c);
 }
 
@@ -102,6 +106,7 @@ void carrier(C& c) {
     if (!transmitter::planned(c.s)) return;
     transmitter::give_up(c);
     diag::end_sending(c);
+    sap_list::given_up(c);
     cycle_over(c);
 }
 
@@ -152,24 +157,23 @@ void due(C& c, Timer timer) {
     }
 }
 
+/// When the chip wants to be woken, given the earliest deadline.
+constexpr Ticks wake_at(const State& s, Ticks soonest) { return std::min(soonest, user_clock::visible(s)); }
+constexpr Ticks next(const State& s) { return wake_at(s, timers::soonest(s)); }
+
 /// Runs everything due up to and including `to`, in order.
 template <class C>
 void run(C& c, Ticks to) {
-    for (;;) {
-        const Timer timer = timers::earliest(c.s);
-        const Ticks at = timers::deadline(c.s, timer);
-        if (at > to) break;
+    Ticks at = timers::soonest(c.s);
+    while (at <= to) {
         user_clock::catch_up(c, at);
         c.s.now = std::max(c.s.now, at);
-        due(c, timer);
+        due(c, timers::due_at(c.s, at));
+        at = timers::soonest(c.s);
     }
     user_clock::catch_up(c, to);
     c.s.now = to;
-}
-
-/// When the chip wants to be woken.
-constexpr Ticks next(const State& s) {
-    return std::min(timers::deadline(s, timers::earliest(s)), user_clock::visible(s));
+    c.s.next = wake_at(c.s, at);
 }
 
 }  // namespace dpchip::chip::ms

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which service a request wants: the SAPs that the chip sets up by itself (6.1; reference 3.1, 3.2).
-//
-// Not modelled yet: the SAP list for SAPs 0..51 (7.2.1). Such requests are answered RS, as with an empty list.
+// Which service a request wants: the SAPs that the chip sets up by itself, and those of the SAP list (6.1, 7.2.1;
+// reference 3.1, 3.2, 5.2).
 #pragma once
 
+#include <dpchip/chip/sap_list.hpp>
 #include <dpchip/chip/services/chk_cfg.hpp>
 #include <dpchip/chip/services/data_exchange.hpp>
 #include <dpchip/chip/services/get_cfg.hpp>
@@ -36,10 +36,13 @@ Answer serve_srd(C& c, std::uint8_t dsap) {
 template <class C>
 bool dp_mode(const C& c) { return (c.s.mode0 & regmap::mode0::dp_mode) != 0; }
 
+constexpr bool listed(const State& s) { return mac::has_dsap(s) && mac::dsap(s) <= sap_list::kHighestSap; }
+
 /// Requests that want an answer with data: by SAP, or Data_Exchange on the default SAP.
 template <class C>
 Answer serve_request(C& c) {
     const bool multicast = mac::function_code(c.s).request() == fdl::Request::msrd;
+    if (!multicast && listed(c.s)) return sap_list::serve(c, mac::dsap(c.s));
     if (!dp_mode(c)) return multicast ? Answer::none : Answer::rs;
     if (!mac::has_dsap(c.s)) return data_exchange::serve(c);
     return multicast ? Answer::none : serve_srd(c, mac::dsap(c.s));
@@ -53,7 +56,21 @@ Answer repeat(const C& c) {
         default_sap || c.s.last_answer == Answer::rd_input || c.s.last_answer == Answer::rd_output;
     if (wants_data_exch && c.s.dp_state != DpState::data_exch) return Answer::rs;
     if (default_sap && !dp::is_owner(c.s, mac::master(c.s))) return Answer::rs;
-    return c.s.last_answer;
+    return c.s.last_answer == Answer::response ? Answer::kept : c.s.last_answer;
+}
+
+/// Without answer: Global_Control, and indications on the SAP list.
+template <class C>
+void serve_sdn(C& c) {
+    if (listed(c.s) && c.s.request_length != 0) static_cast<void>(sap_list::serve(c, mac::dsap(c.s)));
+    else if (dp_mode(c) && mac::has_dsap(c.s) && mac::dsap(c.s) == 58) global_control::serve(c);
+}
+
+/// Acknowledged without data: only the SAP list knows such services.
+template <class C>
+Answer serve_sda(C& c) {
+    if (!listed(c.s)) return Answer::rs;
+    return c.s.retry != 0 ? repeat(c) : sap_list::serve(c, mac::dsap(c.s));
 }
 
 template <class C>
@@ -71,10 +88,10 @@ Answer serve(C& c) {
     case fdl::Request::lsap_status: return serve_ident(c);
     case fdl::Request::sdn_low:
     case fdl::Request::sdn_high:
-        if (dp_mode(c) && mac::has_dsap(c.s) && mac::dsap(c.s) == 58) global_control::serve(c);
+        serve_sdn(c);
         return Answer::none;
     case fdl::Request::sda_low:
-    case fdl::Request::sda_high: return Answer::rs;
+    case fdl::Request::sda_high: return serve_sda(c);
     case fdl::Request::srd_low:
     case fdl::Request::srd_high:
     case fdl::Request::msrd: break;

@@ -42,6 +42,8 @@ enum class RxState : std::uint8_t { unsync, hunt, frame };
 enum class Answer : std::uint8_t {
     none, sc, fdl_status, rs, rr,
     data_exchange, rd_input, rd_output, get_cfg, slave_diag,
+    response,  ///< from a Response-Buffer of the SAP list
+    kept,      ///< the same octets again: a repeated poll
 };
 
 /// Deadlines, in the order in which they are served within one tick.
@@ -87,6 +89,8 @@ struct State {
     std::uint16_t rx_count{};               ///< octets in rx
     std::uint16_t rx_size{};                ///< octets the telegram in rx will have; 0: not known yet
     std::uint16_t tx_count{};               ///< octets in tx
+    std::uint16_t kept_count{};             ///< octets in kept
+    std::uint16_t sap_entry{};              ///< offset of the SAP-List entry of the request being served
     std::uint8_t mode1{}, mode2{}, mode3{};
     std::uint8_t wd_baud_control_val{}, min_tsdr{}, sync_pw{}, control_command{}, group_select{};
 
@@ -118,6 +122,8 @@ struct State {
     std::uint8_t last_fc{};                 ///< FC of that answer
     std::uint8_t answer_fc{};
     std::uint8_t leave_after_answer{};      ///< 0, or LeaveCause + 1
+    std::uint8_t resp_segment{};            ///< Response-Buffer being sent
+    std::uint8_t fdl_ind_after_answer{};    ///< FDL_Ind waits for the end of an immediate response
     std::uint8_t answer_ready{};            ///< the first start bit falls now: take() may have it
 
     // ---- DP_SM
@@ -147,8 +153,9 @@ struct State {
 
     std::array<std::uint8_t, 256> rx{};
     std::array<std::uint8_t, 256> tx{};
+    std::array<std::uint8_t, 256> kept{};   ///< the last response of the SAP list as it was sent
     std::array<std::uint8_t, 4096> ram{};
-    std::array<std::uint8_t, 5> spare{};  ///< fills the last eight octets, so that there is no padding
+    std::array<std::uint8_t, 7> spare{};  ///< fills the last eight octets, so that there is no padding
 };
 static_assert(std::is_trivially_copyable_v<State>);
 static_assert(std::has_unique_object_representations_v<State>, "no padding: snapshots compare with memcmp");
@@ -161,7 +168,7 @@ constexpr void describe(S& s, Visitor&& visit) {
     DPCHIP_FIELD(user_clock_due); DPCHIP_FIELD(irr_fresh_at); DPCHIP_FIELD(line_idle_since);
     DPCHIP_FIELD(character_due); DPCHIP_FIELD(request_end); DPCHIP_FIELD(answer_at); DPCHIP_FIELD(answer_bit);
     DPCHIP_FIELD(irr); DPCHIP_FIELD(imr); DPCHIP_FIELD(irr_fresh); DPCHIP_FIELD(mode0);
-    DPCHIP_FIELD(user_wd_timer); DPCHIP_FIELD(rx_count); DPCHIP_FIELD(rx_size); DPCHIP_FIELD(tx_count);
+    DPCHIP_FIELD(user_wd_timer); DPCHIP_FIELD(rx_count); DPCHIP_FIELD(rx_size); DPCHIP_FIELD(tx_count); DPCHIP_FIELD(kept_count); DPCHIP_FIELD(sap_entry);
     DPCHIP_FIELD(mode1); DPCHIP_FIELD(mode2); DPCHIP_FIELD(mode3); DPCHIP_FIELD(wd_baud_control_val);
     DPCHIP_FIELD(min_tsdr); DPCHIP_FIELD(sync_pw); DPCHIP_FIELD(control_command); DPCHIP_FIELD(group_select);
     DPCHIP_FIELD(x_int_active); DPCHIP_FIELD(rts); DPCHIP_FIELD(xcts_high); DPCHIP_FIELD(xcts_hold);
@@ -172,7 +179,8 @@ constexpr void describe(S& s, Visitor&& visit) {
     DPCHIP_FIELD(retry); DPCHIP_FIELD(answered_negative); DPCHIP_FIELD(request_da); DPCHIP_FIELD(request_sa);
     DPCHIP_FIELD(request_fc); DPCHIP_FIELD(request_data_at); DPCHIP_FIELD(request_length);
     DPCHIP_FIELD(suppress_answer); DPCHIP_FIELD(answer); DPCHIP_FIELD(last_answer); DPCHIP_FIELD(last_fc);
-    DPCHIP_FIELD(answer_fc); DPCHIP_FIELD(leave_after_answer); DPCHIP_FIELD(answer_ready); DPCHIP_FIELD(owner);
+    DPCHIP_FIELD(answer_fc); DPCHIP_FIELD(resp_segment); DPCHIP_FIELD(fdl_ind_after_answer);
+    DPCHIP_FIELD(leave_after_answer); DPCHIP_FIELD(answer_ready); DPCHIP_FIELD(owner);
     DPCHIP_FIELD(master_add); DPCHIP_FIELD(group_ident); DPCHIP_FIELD(sync_req); DPCHIP_FIELD(freeze_req);
     DPCHIP_FIELD(sync_mode); DPCHIP_FIELD(freeze_mode); DPCHIP_FIELD(wd_on); DPCHIP_FIELD(wd_fact_1);
     DPCHIP_FIELD(wd_fact_2); DPCHIP_FIELD(dpv1_enable); DPCHIP_FIELD(fail_safe); DPCHIP_FIELD(publisher_enable);
@@ -183,7 +191,7 @@ constexpr void describe(S& s, Visitor&& visit) {
     DPCHIP_FIELD(dout_cleared); DPCHIP_FIELD(dout_d_filled); DPCHIP_FIELD(diag_control);
     DPCHIP_FIELD(diag_pending); DPCHIP_FIELD(ssa_busy); DPCHIP_FIELD(aux_waiting);
     DPCHIP_FIELD(waiting_prm_length); DPCHIP_FIELD(waiting_cfg_length); DPCHIP_FIELD(prm_present);
-    DPCHIP_FIELD(latched); DPCHIP_FIELD(rx); DPCHIP_FIELD(tx); DPCHIP_FIELD(ram); DPCHIP_FIELD(spare);
+    DPCHIP_FIELD(latched); DPCHIP_FIELD(rx); DPCHIP_FIELD(tx); DPCHIP_FIELD(kept); DPCHIP_FIELD(ram); DPCHIP_FIELD(spare);
 #undef DPCHIP_FIELD
 }
 

@@ -14,12 +14,18 @@ constexpr bool running(const State& s, Timer t) { return deadline(s, t) != core:
 constexpr void start(State& s, Timer t, Ticks at) { deadline(s, t) = at; }
 constexpr void stop(State& s, Timer t) { deadline(s, t) = core::kNever; }
 
-/// The timer to serve first; its deadline may be kNever.
-constexpr Timer earliest(const State& s) {
-    std::size_t first = 0;
-    for (std::size_t i = 1; i < kTimers; ++i)
-        if (s.timers[i] < s.timers[first]) first = i;
-    return static_cast<Timer>(first);
+/// The earliest deadline; kNever when no timer runs. Kept free of branches: it is asked for after every event.
+constexpr Ticks soonest(const State& s) {
+    Ticks first = s.timers[0];
+    for (std::size_t i = 1; i < kTimers; ++i) first = std::min(first, s.timers[i]);
+    return first;
+}
+
+/// The timer to serve at `at`, which is its deadline.
+constexpr Timer due_at(const State& s, Ticks at) {
+    std::size_t i = 0;
+    while (s.timers[i] != at) ++i;
+    return static_cast<Timer>(i);
 }
 
 }  // namespace dpchip::chip::timers

@@ -8,6 +8,7 @@
 #include <dpchip/chip/diag_buffers.hpp>
 #include <dpchip/chip/idle_timer.hpp>
 #include <dpchip/chip/mac.hpp>
+#include <dpchip/chip/sap_list.hpp>
 
 namespace dpchip::chip::transmitter {
 
@@ -93,6 +94,24 @@ void compose_diagnosis(C& c) {
     compose_sd2(c.s, c.s.request_sa, Response::dl, n);
 }
 
+/// A response of the SAP list, with the function code its user gave it. It is kept for a repetition: the user may have
+/// written the next one into its buffer by then.
+template <class C>
+void compose_response(C& c) {
+    const std::uint8_t segment = c.s.resp_segment;
+    const std::size_t n = std::min<std::size_t>(sap_list::octet(c, segment, sap_list::length), room(c.s));
+    for (std::size_t i = 0; i < n; ++i) c.s.tx[data_at(c.s) + i] = sap_list::octet(c, segment, sap_list::kHeaderOctets + i);
+    const auto code = static_cast<Response>(sap_list::octet(c, segment, sap_list::function_code) & 0x0F);
+    compose_sd2(c.s, c.s.request_sa, code, n);
+    c.s.kept = c.s.tx;
+    c.s.kept_count = c.s.tx_count;
+}
+
+constexpr void compose_kept(State& s) {
+    s.tx = s.kept;
+    s.tx_count = s.kept_count;
+}
+
 /// Fetches the buffers and builds the answer, at the moment RTS rises.
 template <class C>
 void compose(C& c) {
@@ -111,6 +130,8 @@ void compose(C& c) {
         return compose_data(c, dpram::pointer(c.s, regmap::org::r_read_cfg_buf_ptr),
                             dpram::cell(c.s, regmap::org::r_len_read_cfg_data));
     case Answer::slave_diag: return compose_diagnosis(c);
+    case Answer::response: return compose_response(c);
+    case Answer::kept: return compose_kept(c.s);
     }
 }
 
@@ -118,7 +139,6 @@ void compose(C& c) {
 template <class C>
 void plan(C& c, Answer answer) {
     c.s.answer = answer;
-    c.s.answer_at = idle::answer_at(c);
     c.s.answer_bit = idle::bit(c.s);
     const Ticks lead = core::kClk * c.options.rts_lead_clk;
     timers::start(c.s, Timer::rts_on, std::max(c.s.now, c.s.answer_at - lead));
