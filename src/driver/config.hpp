@@ -67,6 +67,25 @@ enum class DiagDelivery : std::uint8_t {
     each,    ///< the next one is handed over when the master has fetched the one before (static diagnosis excepted)
 };
 
+/// DP-V1: acyclic services and alarms (VPC3+B, VPC3+C). Everything is off unless asked for. Needs a driver made with it:
+/// see dpv1.hpp.
+struct AcyclicConfig {
+    bool ms1 = false;                  ///< SAP 51 for the class-1 master: DS_Read, DS_Write, Alarm_Ack
+    std::uint8_t ms1_max_data = 240;   ///< longest record there, 4..240: C1_Max_Data_Len
+    bool alarm_sap = false;            ///< SAP 50 as well, for Alarm_Ack alone: Extra_Alarm_SAP_supp
+    std::uint8_t connections = 0;      ///< class-2 connections, 0..49: C2_Max_Count_Channels
+    std::uint8_t ms2_max_data = 240;   ///< longest record there, 4..240: C2_Max_Data_Len
+    std::uint8_t max_initiate = 52;    ///< longest Initiate.req, 20..244: Max_Initiate_PDU_Length
+    std::uint16_t send_timeout = 0;    ///< least Send_Timeout granted, 10 ms; 0: by baud rate
+    std::uint8_t alarms = 0;           ///< alarm types that are raised: the bits of DPV1_Status_2
+    std::uint8_t alarm_sequence = 0;   ///< alarms outstanding at a time, 2..32: Alarm_Sequence_Mode_Count; 0: one of each type
+    std::uint8_t max_alarm = 0;        ///< longest alarm or status block, header included, 4..63; room for it is kept free behind
+                                       ///< the other blocks of a diagnosis of max_diag octets. 0: there are none
+    bool identification = false;       ///< I&M calls at index 255 are taken apart here
+
+    constexpr bool any() const { return ms1 || alarm_sap || connections != 0 || alarms != 0 || max_alarm != 0; }
+};
+
 /// Everything configure() needs. Views must outlive the driver.
 struct Config {
     Variant variant = Variant::vpc3c;
@@ -113,6 +132,7 @@ struct Config {
     std::uint16_t masked = 0;                ///< interrupt bits that shall not raise X/INT; they are served all the same
     DiagDelivery diag_delivery = DiagDelivery::latest;
     bool test_ram = true;                    ///< write, read back and clear the whole RAM first
+    AcyclicConfig dpv1{};
 };
 
 /// Why configure() refused. The *_too_long and *_space errors name the length that is at fault.
@@ -139,6 +159,13 @@ enum class ConfigError : std::uint8_t {
     prm_space,           ///< max_prm
     aux_space,           ///< max_prm, max_cfg, max_ssa: the Aux-Buffers
     ssa_space,           ///< max_ssa
+    no_dpv1,             ///< dpv1 asks for something, and this driver was made without DP-V1
+    record_length,       ///< dpv1: ms1_max_data or ms2_max_data outside 4..240
+    initiate_length,     ///< dpv1: max_initiate outside 20..244
+    connections,         ///< dpv1: more connections than SAPs, or than this driver was made for
+    alarm_length,        ///< dpv1: max_alarm not 0 and outside 4..63, or longer than max_diag allows; alarms without max_alarm
+    alarm_relation,      ///< dpv1: alarms or alarm_sap without ms1; alarm_sequence above 32
+    acyclic_space,       ///< dpv1: the RAM ends before the SAP list and its buffers do
 };
 
 constexpr const char* name(ConfigError e) {
@@ -165,6 +192,13 @@ constexpr const char* name(ConfigError e) {
     case ConfigError::prm_space: return "the RAM is too small for the parameters";
     case ConfigError::aux_space: return "the RAM is too small for the Aux-Buffers";
     case ConfigError::ssa_space: return "the RAM is too small for Set_Slave_Add";
+    case ConfigError::no_dpv1: return "the driver was made without DP-V1";
+    case ConfigError::record_length: return "record length outside 4 to 240 octets";
+    case ConfigError::initiate_length: return "Initiate length outside 20 to 244 octets";
+    case ConfigError::connections: return "too many class-2 connections";
+    case ConfigError::alarm_length: return "alarm length out of range";
+    case ConfigError::alarm_relation: return "alarms need the class-1 acyclic services, and at most 32 at a time";
+    case ConfigError::acyclic_space: return "the RAM is too small for the SAP list and its buffers";
     }
     return "no error";
 }

@@ -148,6 +148,7 @@ private:
     bool test_ram(std::uint16_t pattern);
     void write_registers();
     void write_cells();
+    std::uint16_t mode0() const;
     std::uint8_t mode2() const;
     bool has_mode2() const { return !regmap::traits(config_.variant).access_violation; }
     bool has_mode3() const { return regmap::traits(config_.variant).isom; }

@@ -66,9 +66,28 @@ std::uint8_t Vpc3<Bus, App, N>::mode2() const {
 }
 
 template <BusPort Bus, class App, std::size_t N>
+std::uint16_t Vpc3<Bus, App, N>::mode0() const {
+    namespace m0 = regmap::mode0;
+    const Config& c = config_;
+    unsigned v = m0::dp_mode;
+    if (c.dis_start_control) v |= m0::dis_start_control;
+    if (c.dis_stop_control) v |= m0::dis_stop_control;
+    if (c.wd_base == WdTimeBase::ms_1) v |= m0::wd_base;
+    if (c.int_polarity == IntPolarity::high) v |= m0::int_pol;
+    if (c.sync_supported) v |= m0::sync_supported;
+    if (c.freeze_supported) v |= m0::freeze_supported;
+    if (c.eoi_time == EoiTime::ms_1) v |= m0::eoi_time_base;
+    if (c.user_timer == UserTimer::ms_10) v |= m0::user_time_base;
+    if (c.set_ext_prm) v |= m0::set_ext_prm_supported;
+    if (c.spec_prm_buf_mode) v |= m0::spec_prm_buf_mode;
+    if (c.fail_safe) v |= m0::spec_clear_mode;
+    if (c.prm_cmd_supported) v |= m0::prm_cmd_supported;
+    return static_cast<std::uint16_t>(v);
+}
+
+template <BusPort Bus, class App, std::size_t N>
 void Vpc3<Bus, App, N>::write_registers() {
     namespace irq = regmap::interrupt;
-    namespace m0 = regmap::mode0;
     const Config& c = config_;
     handled_ = irq::mac_reset | irq::go_leave_data_exch | irq::baud_rate_detect | irq::wd_dp_control_timeout |
                irq::new_gc_command | irq::new_ssa_data | irq::new_cfg_data | irq::new_prm_data |
@@ -77,24 +96,11 @@ void Vpc3<Bus, App, N>::write_registers() {
     if (c.user_timer != UserTimer::off) handled_ |= irq::user_timer_clock;
     imr_ = c.service == Service::polled ? std::uint16_t{0xFFFF}
                                         : static_cast<std::uint16_t>(~(handled_ & ~unsigned{c.masked}));
-    unsigned mode0 = m0::dp_mode;
-    if (c.dis_start_control) mode0 |= m0::dis_start_control;
-    if (c.dis_stop_control) mode0 |= m0::dis_stop_control;
-    if (c.wd_base == WdTimeBase::ms_1) mode0 |= m0::wd_base;
-    if (c.int_polarity == IntPolarity::high) mode0 |= m0::int_pol;
-    if (c.sync_supported) mode0 |= m0::sync_supported;
-    if (c.freeze_supported) mode0 |= m0::freeze_supported;
-    if (c.eoi_time == EoiTime::ms_1) mode0 |= m0::eoi_time_base;
-    if (c.user_timer == UserTimer::ms_10) mode0 |= m0::user_time_base;
-    if (c.set_ext_prm) mode0 |= m0::set_ext_prm_supported;
-    if (c.spec_prm_buf_mode) mode0 |= m0::spec_prm_buf_mode;
-    if (c.fail_safe) mode0 |= m0::spec_clear_mode;
-    if (c.prm_cmd_supported) mode0 |= m0::prm_cmd_supported;
 
     write_word(ctl::int_req_reg_low, 0);
     write_word(ctl::int_ack_reg_low, 0xFFFF);
     write(ctl::mode_reg1_r, 0xFF);
-    write_word(ctl::mode_reg0_low, static_cast<std::uint16_t>(mode0));
+    write_word(ctl::mode_reg0_low, mode0());
     if (has_mode3()) {
         unsigned mode3 = 0;
         if (c.dx_int == DxInt::on_change) mode3 |= regmap::mode3::dx_int_mode_2;
