@@ -311,4 +311,10 @@ std::uint8_t peek(const C& c, std::uint16_t bus_address) {
     return c.s.ram[a];
 }
 
+/// True when accesses to all these addresses only move octets of RAM and nobody watches: they may go in one step.
+template <class C>
+bool plain(const C& c, std::uint16_t address, std::size_t octets) {
+    return !c.trace.active() && address >= regmap::kFirstBuffer && address + octets <= dpram::size(c.s, *c.traits);
+}
+
 }  // namespace dpchip::chip::control

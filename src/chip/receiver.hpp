@@ -86,7 +86,7 @@ void characters(C& c, const fdl::Transmission& t) {
 template <class C>
 bool takes_whole(const C& c, const fdl::Transmission& t) {
     if (t.damaged || t.length == 0 || t.bit != idle::bit(c.s)) return false;
-    return c.s.rx_state == RxState::hunt || idle::synchronised(c.s, t.start);
+    return c.s.rx_state == RxState::hunt || t.synchronised || idle::synchronised(c.s, t.start);
 }
 
 /// A transmission that has ended now.

@@ -25,6 +25,7 @@ static_assert(sizeof(TraceRecord) == 16 && std::is_trivially_copyable_v<TraceRec
 struct NoTrace {
     template <class Make>
     static constexpr void emit(Make&&) {}
+    static constexpr bool active() { return false; }
 };
 
 /// Records into memory that the owner provides; the oldest records are overwritten. Not thread-safe.
@@ -35,9 +36,12 @@ struct RingTrace {
 
     void attach(std::span<TraceRecord> memory) { ring = memory.data(); capacity = memory.size(); count = 0; }
 
+    /// True while somebody looks: then blocks must not be moved in one step.
+    bool active() const { return ring != nullptr && capacity != 0; }
+
     template <class Make>
     void emit(Make&& make) {
-        if (ring == nullptr || capacity == 0) return;
+        if (!active()) return;
         ring[count++ % capacity] = make();
     }
 };
