@@ -23,9 +23,10 @@ Answer serve(C& c) {
     const auto d = mac::data(c.s);
     if (dpram::pointer(c.s, regmap::org::r_ssa_buf_ptr) == 0) return Answer::rs;
     if (d.size() > aux::limit(c, aux::Service::ssa)) return Answer::rr;
+    const bool wait_prm = c.s.dp_state == DpState::wait_prm;
+    if (wait_prm && c.s.ssa_busy != 0) return Answer::rr;
     aux::receive(c, aux::Service::ssa, d);
-    if (c.s.dp_state != DpState::wait_prm) return Answer::sc;
-    if (c.s.ssa_busy != 0) return Answer::rr;
+    if (!wait_prm) return Answer::sc;
     if (!acceptable(c, d)) return Answer::sc;
     const std::uint8_t address = d[0], no_add_chg = d[3];
     aux::exchange(c, aux::Service::ssa, static_cast<std::uint8_t>(d.size()));
