@@ -21,6 +21,7 @@ struct Transmission {
     Ticks bit{};                   ///< bit time
     std::uint16_t length{};        ///< octets used
     bool damaged{};                ///< some octet is not what its sender meant: receivers take the character path
+    bool synchronised{};           ///< the line vouches for TSYN before it: set on live lines, whose bit times mean nothing
     std::array<std::uint8_t, kMaxTelegram> octets;
     std::array<std::uint8_t, kMaxTelegram> faults;  ///< per octet, mask of CharacterFault; valid only when damaged
 
@@ -38,7 +39,7 @@ struct Transmission {
     void assign(Ticks at, Ticks bit_time, std::span<const std::uint8_t> bytes) {
         start = at;
         bit = bit_time;
-        damaged = false;
+        damaged = synchronised = false;
         length = static_cast<std::uint16_t>(bytes.size() < kMaxTelegram ? bytes.size() : kMaxTelegram);
         std::memcpy(octets.data(), bytes.data(), length);
     }

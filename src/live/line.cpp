@@ -152,30 +152,23 @@ void LiveLine::drain(std::size_t source, Ticks now) {
 void LiveLine::hear(const Piece& piece, std::size_t source) {
     ++counters_.heard;
     port_.relay(piece.octets, source);
-    Ticks end = std::max(piece.end, segment_.now());
-    const Ticks length = bit_ * (fdl::kCharacterBits * static_cast<std::int64_t>(piece.octets.size()));
     // Two telegrams of one read: the second must not hide what the first one causes.
+    Ticks end = std::max(piece.end, segment_.now());
     if (busy_until_ >= end) end = busy_until_ + bit_;
-    if (after_damage_ && !timed()) end = std::max(end, busy_until_ + bit_ * fdl::kTsynBits + length);
-    after_damage_ = false;
     inject(piece.octets, {}, end);
     busy_until_ = end;
     request_end_ = end;
 }
 
-/// Damage comes as characters back to back. Where bit times mean nothing it is dated so far back that the longest
-/// telegram behind it still has its silence before it.
+/// Damage comes as characters back to back, the last of them when it was read.
 void LiveLine::hear_damage(const Piece& piece) {
     ++counters_.damaged;
     counters_.damaged_octets += piece.octets.size();
-    after_damage_ = true;
-    constexpr std::int64_t kBack = fdl::kCharacterBits * static_cast<std::int64_t>(fdl::kMaxTelegram) + 2 * fdl::kTsynBits;
-    const Ticks end = timed() ? piece.end : piece.end - bit_ * kBack;
     for (std::size_t at = 0; at < piece.octets.size(); at += fdl::kMaxTelegram) {
         const std::size_t n = std::min(fdl::kMaxTelegram, piece.octets.size() - at);
         const std::size_t behind = piece.octets.size() - at - n;
         inject(piece.octets.subspan(at, n), piece.faults.subspan(at, n),
-               end - bit_ * (fdl::kCharacterBits * static_cast<std::int64_t>(behind)));
+               piece.end - bit_ * (fdl::kCharacterBits * static_cast<std::int64_t>(behind)));
     }
 }
 
@@ -187,6 +180,7 @@ void LiveLine::inject(std::span<const std::uint8_t> octets, std::span<const std:
     t.start = end - bit_ * (fdl::kCharacterBits * static_cast<std::int64_t>(octets.size()));
     const auto telegram = fdl::decode(t.bytes());
     t.damaged = !telegram || telegram->size != octets.size() || !faults.empty();
+    t.synchronised = !timed();
     std::fill_n(t.faults.begin(), t.length, std::uint8_t{fdl::fault_none});
     std::copy(faults.begin(), faults.end(), t.faults.begin());
     segment_.inject(port_station_, t);

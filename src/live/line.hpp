@@ -4,9 +4,9 @@
 // A telegram ends when its last octet was read. Whole good telegrams take the telegram path with that time; only damaged
 // input goes character by character, without gaps. An answer leaves in one write, never before its time, and not at all
 // when the slot time is over. On media without bit timing (pty, tcp) sending is over when the write returned; the
-// segment's bit times then count only up to the first start bit. Times before a pty's or a socket's data reach this
-// program are unknown: damage is dated far back, so that it never costs the next good telegram its silence of 33 bit
-// times; an answer of ours in between does, and that telegram is dated later, as a wire would have carried it.
+// segment's bit times then count only up to the first start bit. Silence cannot be measured there either: the line vouches
+// for the 33 bit times before every good telegram, so that damage never costs the next one, nor a telegram that follows
+// another faster than a wire would carry it.
 //
 // Line time is 0 when the line is made and follows the wall. It may run ahead by what processor accesses took (spend());
 // run() waits until the wall has caught up. No threads: everything happens inside the calls. One thread at a time.
@@ -133,7 +133,6 @@ private:
     std::unique_ptr<Reception> reception_;
     std::vector<Outgoing> outgoing_;
     Ticks busy_until_{};                   ///< end of the last telegram on the line, either way
-    bool after_damage_ = false;
     std::optional<Ticks> request_end_;     ///< of the last telegram heard; answers count their slot time from here
     std::function<fdl::BaudCode()> follow_;
     std::atomic<bool> stop_{false};

@@ -272,7 +272,7 @@ struct ChipBench {
         line.run(1200_ms);
     }
     /// Sends and runs for `wait`; the octets of the answers.
-    std::vector<Octets> ask(const Octets& octets, Ticks wait = 100_ms) {
+    std::vector<Octets> ask(const Octets& octets, Ticks wait = core::milliseconds(100)) {
         port.sent.clear();
         port.arrive(time.now_ + 100_us, octets);
         line.run(wait);
