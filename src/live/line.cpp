@@ -77,8 +77,8 @@ void LiveLine::step() {
 }
 
 /// The next line time at which there is something to do without input.
-Ticks LiveLine::next_event() const {
-    Ticks next = const_cast<segment::Segment&>(segment_).next();  // sorts its schedule, changes nothing visible
+Ticks LiveLine::next_event() {
+    Ticks next = segment_.next();
     for (const StreamDecoder& decoder : decoders_) next = std::min(next, decoder.deadline());
     for (const Outgoing& out : outgoing_) next = std::min(next, out.due);
     return next;

@@ -114,7 +114,7 @@ private:
     void hear_damage(const Piece& piece);
     void inject(std::span<const std::uint8_t> octets, std::span<const std::uint8_t> faults, Ticks end);
     void step();
-    Ticks next_event() const;
+    Ticks next_event();
 
     Port& port_;
     const TimeSource& time_;
