@@ -26,7 +26,7 @@ bool Master::take(fdl::Transmission& t) {
     if (step_ == Step::token) measure();
     t.start = now_;
     t.bit = bit_;
-    t.damaged = false;
+    t.damaged = t.synchronised = false;
     t.length = static_cast<std::uint16_t>(compose(t.buffer()));
     own_end_ = t.end();
     if (!wants_answer()) {

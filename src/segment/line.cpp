@@ -131,6 +131,7 @@ void Segment::split(std::uint8_t f, std::size_t octet, Ticks gap) {
     tail.sent.bit = head.bit;
     tail.sent.start = head.character(octet).start + gap;
     tail.sent.damaged = true;
+    tail.sent.synchronised = false;
     tail.sent.length = static_cast<std::uint16_t>(head.length - octet);
     std::copy_n(head.octets.begin() + static_cast<std::ptrdiff_t>(octet), tail.sent.length, tail.sent.octets.begin());
     std::copy_n(head.faults.begin() + static_cast<std::ptrdiff_t>(octet), tail.sent.length, tail.sent.faults.begin());
