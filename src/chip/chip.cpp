@@ -46,7 +46,7 @@ inline constexpr std::size_t kHead = 8, kTail = 4;
 bool plausible(const State& s) {
     const bool machines = BufferSm{s.din_sm}.valid() && BufferSm{s.dout_sm}.valid() && BufferSm{s.dxbout_sm}.valid();
     const bool states = s.dp_state <= DpState::data_exch && s.wd_state <= WdState::dp_control && s.rx_state <= RxState::frame &&
-                        s.bus_mode <= BusMode::motorola && s.answer <= Answer::kept && s.last_answer <= Answer::kept;
+                        s.bus_mode <= BusMode::motorola && s.cs_state <= CsState::wait_cv && s.answer <= Answer::kept && s.last_answer <= Answer::kept;
     const bool rates = static_cast<std::size_t>(s.probe) < fdl::kBaudRates &&
                        (s.baud == fdl::BaudCode::not_found || static_cast<std::size_t>(s.baud) < fdl::kBaudRates);
     const bool counts = s.rx_count <= fdl::kMaxTelegram && s.tx_count <= fdl::kMaxTelegram && s.kept_count <= fdl::kMaxTelegram && s.prm_counter <= 2 && s.cfg_counter <= 2 &&

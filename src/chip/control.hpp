@@ -204,6 +204,14 @@ void set_mode0(C& c, std::uint16_t value) {
     if (((before ^ c.s.mode0) & regmap::mode0::int_pol) != 0) outputs::changed(c, Fact::x_int, Pin::x_int);
 }
 
+/// The role and the polarity of pin 13 may change with it.
+template <class C>
+void set_mode2(C& c, std::uint8_t value) {
+    const Level before = outputs::level(c.s, Pin::xdataexch_sync);
+    c.s.mode2 = value & c.traits->mode2_bits;
+    if (outputs::level(c.s, Pin::xdataexch_sync) != before) outputs::changed(c, Fact::xdataexch_sync, Pin::xdataexch_sync);
+}
+
 template <class C>
 void set_mode1(C& c, std::uint8_t bits) {
     namespace m1 = regmap::mode1;
@@ -237,7 +245,7 @@ void write_register(C& c, Effect effect, std::uint16_t address, std::uint8_t v) 
     case Effect::irr_set_low:         return irq::set_by_user(c, v);
     case Effect::irr_set_high:        return irq::set_by_user(c, in_high(v));
     case Effect::iar_low:             return irq::acknowledge(c, v);
-    case Effect::iar_high:            return irq::acknowledge(c, in_high(v));
+    case Effect::iar_high:            irq::acknowledge(c, in_high(v)); return isom::after_acknowledge(c);
     case Effect::imr_low:             return irq::set_imr(c, with_low(c.s.imr, v));
     case Effect::imr_high:            return irq::set_imr(c, with_high(c.s.imr, v));
     case Effect::mode0_write_low:     if (may_set_mode(c, address)) set_mode0(c, with_low(c.s.mode0, v));  return;
@@ -246,7 +254,7 @@ void write_register(C& c, Effect effect, std::uint16_t address, std::uint8_t v) 
     case Effect::mode1_reset:         return reset_mode1(c, v);
     case Effect::wd_baud_control_val: c.s.wd_baud_control_val = v; return;
     case Effect::min_tsdr_val:        c.s.min_tsdr = v;            return;
-    case Effect::mode2_write:         if (may_set_mode(c, address)) c.s.mode2 = v; return;
+    case Effect::mode2_write:         if (may_set_mode(c, address)) set_mode2(c, v); return;
     case Effect::sync_pw:             c.s.sync_pw = v;             return;
     case Effect::control_command:     c.s.control_command = v;     return;
     case Effect::group_select:        c.s.group_select = v;        return;
@@ -289,7 +297,9 @@ template <class C>
 std::uint8_t read(C& c, std::uint16_t bus_address) {
     const std::uint16_t a = checked(c, decoded(c.s, *c.traits, bus_address));
     const auto read_control = [&] { return read_register(c, regmap::effect(c.traits->variant, Dir::read, a), a); };
-    const std::uint8_t value = a < regmap::control::count ? access(c, read_control) : c.s.ram[a];
+    const std::uint8_t value = a < regmap::control::count   ? access(c, read_control)
+                               : clock_sync::watches(c, a) ? clock_sync::read(c, a)
+                                                           : c.s.ram[a];
     c.fact(Fact::cpu_read, a, value);
     return value;
 }
@@ -300,6 +310,7 @@ void write(C& c, std::uint16_t bus_address, std::uint8_t value) {
     c.fact(Fact::cpu_write, a, value);
     const auto write_control = [&] { write_register(c, regmap::effect(c.traits->variant, Dir::write, a), a, value); };
     if (a < regmap::control::count) access(c, write_control);
+    else if (clock_sync::watches(c, a)) clock_sync::write(c, a, value);
     else c.s.ram[a] = value;
 }
 
@@ -308,13 +319,13 @@ std::uint8_t peek(const C& c, std::uint16_t bus_address) {
     std::uint16_t a = decoded(c.s, *c.traits, bus_address);
     if (a >= dpram::size(c.s, *c.traits)) a = static_cast<std::uint16_t>(a - 0x400);
     if (a < regmap::control::count) return peek_register(c, regmap::effect(c.traits->variant, Dir::read, a));
-    return c.s.ram[a];
+    return clock_sync::watches(c, a) ? clock_sync::peek(c, a) : c.s.ram[a];
 }
 
 /// True when accesses to all these addresses only move octets of RAM and nobody watches: they may go in one step.
 template <class C>
 bool plain(const C& c, std::uint16_t address, std::size_t octets) {
-    return !c.trace.active() && address >= regmap::kFirstBuffer && address + octets <= dpram::size(c.s, *c.traits);
+    return !c.trace.active() && !clock_sync::enabled(c) && address >= regmap::kFirstBuffer && address + octets <= dpram::size(c.s, *c.traits);
 }
 
 }  // namespace dpchip::chip::control

@@ -5,8 +5,11 @@
 #include <string_view>
 
 #include <dpchip/chip/aux_buffers.hpp>
+#include <dpchip/chip/clock_sync.hpp>
 #include <dpchip/chip/data_buffers.hpp>
 #include <dpchip/chip/diag_buffers.hpp>
+#include <dpchip/chip/dxb.hpp>
+#include <dpchip/chip/isom.hpp>
 #include <dpchip/chip/state_table.hpp>
 #include <dpchip/chip/wd_sm.hpp>
 
@@ -70,6 +73,9 @@ void leave_actions(C& c) {
     aux::drop_all(c);
     c.s.cfg_okay = c.s.chk_cfg_seen = c.s.din_given = 0;
     if (c.options.leave_master_stops_wd) wd::dispatch(c, wd::Event::leave_master);
+    clock_sync::cyclic_state_machine_changed(c);
+    dxb::stop_monitoring(c.s);
+    isom::stop(c);
     c.s.dpv1_enable = c.s.publisher_enable = c.s.fail_safe = 0;
     diag::refresh_both(c);
 }
@@ -84,6 +90,7 @@ void dispatch(C& c, Event event) {
         c.s.user_wd_timer = core::word(dpram::cell(c.s, regmap::org::r_user_wd_value_high),
                                        dpram::cell(c.s, regmap::org::r_user_wd_value_low));
         set_state(c, kRows[row].to);
+        dxb::start_monitoring(c);
         diag::refresh(c);
         break;
     case Action::leave: leave_actions(c); break;

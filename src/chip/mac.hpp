@@ -30,7 +30,10 @@ constexpr bool known_function(fdl::FunctionCode fc) {
 constexpr bool concerns(const State& s, const fdl::Telegram& t) {
     if (!t.has_fc() || !t.fc.is_request() || t.source() == fdl::kBroadcast) return false;
     if (!t.saps_present()) return false;
-    if (t.destination() == fdl::kBroadcast) return fdl::is_sdn(t.fc.request()) && (t.fc.octet & 0x80u) == 0;
+    if (t.destination() == fdl::kBroadcast) {
+        const bool clock = t.fc.request() == fdl::Request::time_event;
+        return t.fc.clock_value() || ((t.fc.octet & 0x80u) == 0 && (clock || fdl::is_sdn(t.fc.request())));
+    }
     return t.destination() == s.ts;
 }
 
@@ -45,6 +48,20 @@ constexpr bool is_retry(State& s, const fdl::Telegram& t) {
     s.fcb_sa = t.source();
     s.fcb_last = fcb ? 1 : 0;
     return false;
+}
+
+/// Keeps what the telegram in rx wants, to be worked on at t0 + 1 clk.
+template <class C>
+void keep(C& c, const fdl::Telegram& t) {
+    c.s.request_end = c.s.now;
+    c.s.answer_at = idle::answer_at(c);  // with the minTSDR of now, whatever this telegram sets
+    c.s.request_da = t.da;
+    c.s.request_sa = t.sa;
+    c.s.request_fc = t.fc.octet;
+    c.s.request_data_at = static_cast<std::uint8_t>(t.size - 2 - t.data().size());
+    c.s.request_length = static_cast<std::uint8_t>(t.data().size());
+    c.s.suppress_answer = 0;
+    timers::start(c.s, Timer::telegram, c.s.now + core::kClk);
 }
 
 /// A telegram without error has ended now; its octets stand in rx.
@@ -66,15 +83,7 @@ void deliver(C& c, const fdl::Telegram& t) {
     if (!known_function(t.fc)) return;
 
     c.s.retry = is_retry(c.s, t) ? 1 : 0;
-    c.s.request_end = c.s.now;
-    c.s.answer_at = idle::answer_at(c);  // with the minTSDR of now, whatever this telegram sets
-    c.s.request_da = t.da;
-    c.s.request_sa = t.sa;
-    c.s.request_fc = t.fc.octet;
-    c.s.request_data_at = static_cast<std::uint8_t>(t.size - 2 - t.data().size());
-    c.s.request_length = static_cast<std::uint8_t>(t.data().size());
-    c.s.suppress_answer = 0;
-    timers::start(c.s, Timer::telegram, c.s.now + core::kClk);
+    keep(c, t);
 }
 
 /// The request being served.

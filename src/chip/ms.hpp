@@ -34,6 +34,7 @@ void go_offline(C& c) {
         c.s.ts = 0xFF;
         c.s.rx_busy = 0;
         c.s.fcb_valid = 0;
+        clock_sync::dispatch(c, clock_sync::Event::stop);
     }
     c.s.mode1 &= static_cast<std::uint8_t>(~(regmap::mode1::go_offline | regmap::mode1::start_vpc3));
     if ((c.s.mode0 & regmap::mode0::cs_supported) == 0 || !c.traits->clock_sync) irq::raise(c, regmap::interrupt::mac_reset);
@@ -73,6 +74,10 @@ void telegram(C& c) {
     timers::stop(c.s, Timer::telegram);
     if (c.s.wd_state == WdState::baud_search) {
         wd::dispatch(c, wd::Event::baud_detected);
+        return cycle_over(c);
+    }
+    if (!mac::function_code(c.s).is_request()) {
+        dxb::receive(c);
         return cycle_over(c);
     }
     if (c.s.retry != 0) c.fact(Fact::retry, 0);
@@ -153,6 +158,9 @@ void due(C& c, Timer timer) {
     case Timer::watchdog: return dp::watchdog_expired(c);
     case Timer::eoi: return irq::inactive_time_over(c);
     case Timer::offline: return offline_due(c);
+    case Timer::dxb_monitor: return dxb::monitor(c);
+    case Timer::sync: return isom::pulse_edge(c);
+    case Timer::clock_sync: return clock_sync::timer_due(c);
     case Timer::count: break;
     }
 }

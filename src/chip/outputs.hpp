@@ -13,7 +13,9 @@ constexpr Level level(const State& s, Pin pin) {
     switch (pin) {
     case Pin::x_int: return to_level(((s.mode0 & regmap::mode0::int_pol) != 0) == (s.x_int_active != 0));
     case Pin::rts: return to_level(s.rts != 0);
-    case Pin::xdataexch_sync: return to_level(s.dp_state != DpState::data_exch);
+    case Pin::xdataexch_sync:
+        if ((s.mode2 & (regmap::mode2::sync_ena | regmap::mode2::dx_int_port)) == 0) return to_level(s.dp_state != DpState::data_exch);
+        return to_level((s.sync_active != 0) == ((s.mode2 & regmap::mode2::sync_pol) != 0));
     }
     return Level::low;
 }

@@ -7,6 +7,7 @@
 
 #include <cstring>
 
+#include <dpchip/chip/dxb.hpp>
 #include <dpchip/chip/idle_timer.hpp>
 #include <dpchip/chip/mac.hpp>
 #include <dpchip/fdl/transmission.hpp>
@@ -30,6 +31,15 @@ void reject(C& c, fdl::Reject reason) {
     c.s.rx_busy = 0;
 }
 
+/// To the MAC, or to the DXB subscriber: data of a publisher are an answer to somebody else.
+template <class C>
+void deliver(C& c, const fdl::Telegram& t) {
+    if (!t.has_fc() || t.fc.is_request() || c.s.wd_state == WdState::baud_search) return mac::deliver(c, t);
+    if (!dxb::wants(c, t)) return;
+    c.fact(Fact::heard, mac::addresses(t), mac::summary(t));
+    mac::keep(c, t);
+}
+
 /// All octets of a telegram have come.
 template <class C>
 void complete(C& c) {
@@ -37,7 +47,7 @@ void complete(C& c) {
     if (!telegram) return reject(c, telegram.error());
     to_hunt(c.s);
     c.s.rx_busy = 0;
-    mac::deliver(c, *telegram);
+    deliver(c, *telegram);
 }
 
 template <class C>
@@ -102,7 +112,7 @@ void transmission(C& c, const fdl::Transmission& t) {
     c.s.line_idle_since = last.last_low_end();
     c.s.character_due = t.end();
     c.s.rx_busy = 0;
-    mac::deliver(c, *telegram);
+    deliver(c, *telegram);
 }
 
 }  // namespace dpchip::chip::receiver

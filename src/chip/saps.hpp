@@ -95,7 +95,9 @@ Answer serve(C& c) {
     case fdl::Request::srd_low:
     case fdl::Request::srd_high:
     case fdl::Request::msrd: break;
-    case fdl::Request::time_event: return Answer::none;
+    case fdl::Request::time_event:
+        if ((c.s.request_da & 0x7F) == fdl::kBroadcast) clock_sync::receive(c);
+        return Answer::none;
     }
     return c.s.retry != 0 ? repeat(c) : serve_request(c);
 }

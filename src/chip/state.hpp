@@ -56,9 +56,15 @@ enum class Timer : std::uint8_t {
     watchdog,      ///< BAUD_SEARCH probe, BAUD_CONTROL or DP_CONTROL time
     eoi,           ///< end of the interrupt inactive time
     offline,       ///< Go_Offline is executed
+    dxb_monitor,   ///< end of a monitoring time of the DXB links
+    sync,          ///< next edge of a SYNC pulse
+    clock_sync,    ///< supervision of the Clock_Value, overflow of Receive_Delay_Time
     count
 };
 inline constexpr std::size_t kTimers = static_cast<std::size_t>(Timer::count);
+
+/// Time receiver (7.3.3; reference 6.3).
+enum class CsState : std::uint8_t { stopped, wait_te, wait_cv };
 
 /// Who occupies an Aux-Buffer with a telegram that waits for its turn (reference 4.7).
 enum class AuxUser : std::uint8_t { none, prm, ext_prm, cfg };
@@ -78,6 +84,10 @@ struct State {
     // ---- transmitter
     Ticks answer_at{};                      ///< first start bit of the answer
     Ticks answer_bit{};                     ///< its bit time
+
+    // ---- clock synchronisation
+    Ticks time_event_at{};                  ///< end of the last Time_Event
+    Ticks delay_from{};                     ///< the Time_Event that Receive_Delay_Time counts from
 
     // ---- interrupt controller (5.3)
     std::uint16_t irr{};
@@ -139,6 +149,13 @@ struct State {
     std::uint8_t gc_command_before{}, gc_group_before{};
     std::uint8_t prm_fault{}, cfg_fault{}, not_supported{}, prm_req{};
 
+    // ---- DP-V2
+    std::uint8_t sync_active{};             ///< pin 13 shows SYNC or a synchronised DX_Out
+    std::uint8_t dx_stored{};               ///< Simple Sync Mode: DX_Out waits for the next SYNCH
+    CsState cs_state{};
+    std::uint8_t delay_running{};           ///< Receive_Delay_Time has not been read
+    std::array<std::uint8_t, 8> last_time_event{};
+
     // ---- buffers
     std::uint8_t din_sm{}, dout_sm{}, dxbout_sm{}, diag_sm{};
     std::uint8_t dout_cleared{};            ///< bit n: Dout_Buf n was zeroed by the chip
@@ -155,7 +172,7 @@ struct State {
     std::array<std::uint8_t, 256> tx{};
     std::array<std::uint8_t, 256> kept{};   ///< the last response of the SAP list as it was sent
     std::array<std::uint8_t, 4096> ram{};
-    std::array<std::uint8_t, 7> spare{};  ///< fills the last eight octets, so that there is no padding
+    std::array<std::uint8_t, 3> spare{};  ///< fills the last eight octets, so that there is no padding
 };
 static_assert(std::is_trivially_copyable_v<State>);
 static_assert(std::has_unique_object_representations_v<State>, "no padding: snapshots compare with memcmp");
@@ -167,6 +184,7 @@ constexpr void describe(S& s, Visitor&& visit) {
     DPCHIP_FIELD(now); DPCHIP_FIELD(next); DPCHIP_FIELD(timers); DPCHIP_FIELD(prescaler_origin);
     DPCHIP_FIELD(user_clock_due); DPCHIP_FIELD(irr_fresh_at); DPCHIP_FIELD(line_idle_since);
     DPCHIP_FIELD(character_due); DPCHIP_FIELD(request_end); DPCHIP_FIELD(answer_at); DPCHIP_FIELD(answer_bit);
+    DPCHIP_FIELD(time_event_at); DPCHIP_FIELD(delay_from);
     DPCHIP_FIELD(irr); DPCHIP_FIELD(imr); DPCHIP_FIELD(irr_fresh); DPCHIP_FIELD(mode0);
     DPCHIP_FIELD(user_wd_timer); DPCHIP_FIELD(rx_count); DPCHIP_FIELD(rx_size); DPCHIP_FIELD(tx_count); DPCHIP_FIELD(kept_count); DPCHIP_FIELD(sap_entry);
     DPCHIP_FIELD(mode1); DPCHIP_FIELD(mode2); DPCHIP_FIELD(mode3); DPCHIP_FIELD(wd_baud_control_val);
@@ -187,7 +205,8 @@ constexpr void describe(S& s, Visitor&& visit) {
     DPCHIP_FIELD(prm_counter); DPCHIP_FIELD(cfg_counter); DPCHIP_FIELD(cfg_okay); DPCHIP_FIELD(chk_cfg_seen);
     DPCHIP_FIELD(din_given); DPCHIP_FIELD(gc_command_before); DPCHIP_FIELD(gc_group_before);
     DPCHIP_FIELD(prm_fault); DPCHIP_FIELD(cfg_fault); DPCHIP_FIELD(not_supported); DPCHIP_FIELD(prm_req);
-    DPCHIP_FIELD(din_sm); DPCHIP_FIELD(dout_sm); DPCHIP_FIELD(dxbout_sm); DPCHIP_FIELD(diag_sm);
+    DPCHIP_FIELD(sync_active); DPCHIP_FIELD(dx_stored); DPCHIP_FIELD(cs_state); DPCHIP_FIELD(delay_running);
+    DPCHIP_FIELD(last_time_event); DPCHIP_FIELD(din_sm); DPCHIP_FIELD(dout_sm); DPCHIP_FIELD(dxbout_sm); DPCHIP_FIELD(diag_sm);
     DPCHIP_FIELD(dout_cleared); DPCHIP_FIELD(dout_d_filled); DPCHIP_FIELD(diag_control);
     DPCHIP_FIELD(diag_pending); DPCHIP_FIELD(ssa_busy); DPCHIP_FIELD(aux_waiting);
     DPCHIP_FIELD(waiting_prm_length); DPCHIP_FIELD(waiting_cfg_length); DPCHIP_FIELD(prm_present);

@@ -60,12 +60,15 @@ void restart_baud_control(C& c) {
     timers::start(c.s, Timer::watchdog, nth_prescaler_tick(c.s, core::milliseconds(10), root * root));
 }
 
-/// T_WD = WD_Base * WD_Fact_1 * WD_Fact_2.
+/// When T_WD = WD_Base * WD_Fact_1 * WD_Fact_2 is over, counted from now.
 template <class C>
-void restart_dp_control(C& c) {
+Ticks t_wd_end(const C& c) {
     const Ticks unit = core::milliseconds((c.s.mode0 & regmap::mode0::wd_base) != 0 ? 1 : 10);
-    timers::start(c.s, Timer::watchdog, nth_prescaler_tick(c.s, unit, std::int64_t{c.s.wd_fact_1} * c.s.wd_fact_2));
+    return nth_prescaler_tick(c.s, unit, std::int64_t{c.s.wd_fact_1} * c.s.wd_fact_2);
 }
+
+template <class C>
+void restart_dp_control(C& c) { timers::start(c.s, Timer::watchdog, t_wd_end(c)); }
 
 /// How long one rate is tried.
 template <class C>

@@ -44,7 +44,8 @@ struct FunctionCode {
     constexpr bool is_request() const { return (octet & 0x40u) != 0; }
     constexpr bool fcb() const { return (octet & 0x20u) != 0; }
     constexpr bool fcv() const { return (octet & 0x10u) != 0; }
-    constexpr bool clock_value() const { return octet == 0xC0u; }
+    /// CV: bits 5 and 4 should be 0 and are not looked at.
+    constexpr bool clock_value() const { return (octet & 0xCFu) == 0xC0u; }
     constexpr std::uint8_t function() const { return octet & 0x0Fu; }
     constexpr Request request() const { return static_cast<Request>(function()); }
     constexpr Response response() const { return static_cast<Response>(function()); }

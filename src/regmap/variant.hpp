@@ -58,6 +58,7 @@ struct Traits {
     bool sd3_proves_baud{};           ///< an SD3 telegram ends the baud rate search
     bool chk_cfg_aux1{};              ///< Chk_Cfg comes through Aux-Buffer 1 whatever R_Aux_Buf_Sel says (reference 10.16)
     std::uint16_t mode0_bits{};       ///< bits of Mode Register 0 that exist
+    std::uint8_t mode2_bits{};        ///< bits of Mode Register 2 that exist; writing the others has no effect
 };
 
 // clang-format off
@@ -66,27 +67,27 @@ inline constexpr std::array<Traits, kVariants> kTraits{{
      .release = 0x0, .mode_regs_readable = true, .dpv1 = false, .dxb = false, .isom = false, .clock_sync = false, .ext_prm = false,
      .user_timer = true, .interrupts = 0x3F1F, .min_tsdr_reset = 11, .baud_control_reset = 0x10, .din_gates_data_exch = false,
      .gc_only_changed = false, .presets_gc_command = false, .prm_reserved_checks = false, .dis_start_reset = false, .sd3_proves_baud = true,
-     .chk_cfg_aux1 = false, .mode0_bits = 0x37FF},
+     .chk_cfg_aux1 = false, .mode0_bits = 0x37FF, .mode2_bits = 0x07},
     {.variant = Variant::vpc3b, .name = "vpc3+b", .documented = false, .ram_bytes = 2048, .max_ram_bytes = 4096, .access_violation = false,
      .release = 0xB, .mode_regs_readable = true, .dpv1 = true, .dxb = true, .isom = true, .clock_sync = false, .ext_prm = true,
      .user_timer = true, .interrupts = 0xFFFF, .min_tsdr_reset = 11, .baud_control_reset = 0x10, .din_gates_data_exch = false,
      .gc_only_changed = false, .presets_gc_command = false, .prm_reserved_checks = true, .dis_start_reset = false, .sd3_proves_baud = true,
-     .chk_cfg_aux1 = true, .mode0_bits = 0x7FFF},
+     .chk_cfg_aux1 = true, .mode0_bits = 0x7FFF, .mode2_bits = 0xFF},
     {.variant = Variant::vpc3c, .name = "vpc3+c", .documented = true, .ram_bytes = 2048, .max_ram_bytes = 4096, .access_violation = false,
      .release = 0xC, .mode_regs_readable = true, .dpv1 = true, .dxb = true, .isom = true, .clock_sync = true, .ext_prm = true,
      .user_timer = true, .interrupts = 0xFFFF, .min_tsdr_reset = 11, .baud_control_reset = 0x10, .din_gates_data_exch = false,
      .gc_only_changed = false, .presets_gc_command = false, .prm_reserved_checks = true, .dis_start_reset = false, .sd3_proves_baud = true,
-     .chk_cfg_aux1 = false, .mode0_bits = 0x7FFF},
+     .chk_cfg_aux1 = false, .mode0_bits = 0x7FFF, .mode2_bits = 0xFF},
     {.variant = Variant::apc3, .name = "apc3", .documented = true, .ram_bytes = 1536, .max_ram_bytes = 1536, .access_violation = true,
      .release = 0x0, .mode_regs_readable = false, .dpv1 = false, .dxb = false, .isom = false, .clock_sync = false, .ext_prm = false,
      .user_timer = false, .interrupts = 0x3F0F, .min_tsdr_reset = 11, .baud_control_reset = 0x1E, .din_gates_data_exch = true,
      .gc_only_changed = true, .presets_gc_command = true, .prm_reserved_checks = false, .dis_start_reset = true, .sd3_proves_baud = true,
-     .chk_cfg_aux1 = false, .mode0_bits = 0x3BFF},
+     .chk_cfg_aux1 = false, .mode0_bits = 0x3BFF, .mode2_bits = 0x00},
     {.variant = Variant::spc3, .name = "spc3", .documented = false, .ram_bytes = 1536, .max_ram_bytes = 1536, .access_violation = true,
      .release = 0x0, .mode_regs_readable = false, .dpv1 = false, .dxb = false, .isom = false, .clock_sync = false, .ext_prm = false,
      .user_timer = false, .interrupts = 0x3F0F, .min_tsdr_reset = 11, .baud_control_reset = 0x1E, .din_gates_data_exch = true,
      .gc_only_changed = true, .presets_gc_command = true, .prm_reserved_checks = false, .dis_start_reset = true, .sd3_proves_baud = true,
-     .chk_cfg_aux1 = false, .mode0_bits = 0x3BFF},
+     .chk_cfg_aux1 = false, .mode0_bits = 0x3BFF, .mode2_bits = 0x00},
 }};
 // clang-format on
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <dpchip/chip/dp_sm.hpp>
+#include <dpchip/chip/isom.hpp>
 #include <dpchip/chip/mac.hpp>
 
 namespace dpchip::chip::data_exchange {
@@ -18,9 +19,9 @@ void leave_after_answer(C& c, regmap::LeaveCause cause) {
 template <class C>
 void interrupt(C& c, bool outputs, bool same) {
     if ((c.s.mode3 & regmap::mode3::dx_int_mode_2) != 0) {
-        if (!same) irq::raise(c, regmap::interrupt::dx_out);
+        if (!same) isom::dx_out(c);
     } else if (outputs || dout::interrupt_without_outputs(c.s)) {
-        irq::raise(c, regmap::interrupt::dx_out);
+        isom::dx_out(c);
     }
 }
 

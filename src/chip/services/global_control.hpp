@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Global_Control, SAP 58 (6.2.6; reference 3.9). SYNCH telegrams of the isochron mode: chapter 7.
+// Global_Control, SAP 58 (6.2.6; reference 3.9). A SYNCH telegram is one too (7.3.2).
 #pragma once
 
 #include <dpchip/chip/dp_sm.hpp>
+#include <dpchip/chip/isom.hpp>
 #include <dpchip/chip/mac.hpp>
 
 namespace dpchip::chip::global_control {
@@ -68,6 +69,7 @@ bool tells_user(const C& c, std::uint8_t command, std::uint8_t group) {
 template <class C>
 void serve(C& c) {
     const auto d = mac::data(c.s);
+    isom::synch(c, d);
     if (!valid(c, d) || !addressed(c.s, d[1])) return;
     const std::uint8_t command = d[0], group = d[1];
     freeze(c, command);

@@ -98,6 +98,7 @@ void present_directly(C& c, Data d) {
 template <class C>
 void accept(C& c, Data d) {
     take(c, d);
+    clock_sync::cyclic_state_machine_changed(c);
     if (d.size() > 7) {
         if (special_buffer(c)) present_directly(c, d);
         else aux::present_prm(c, AuxUser::prm, d);
