@@ -21,7 +21,6 @@ const char* name(ConfigError error) {
     case ConfigError::too_long: return "too many octets for one telegram";
     case ConfigError::no_cfg: return "there is no configuration octet";
     case ConfigError::watchdog: return "the watchdog time is too long";
-    case ConfigError::full: return "no more slaves fit";
     }
     return "unknown";
 }

@@ -65,7 +65,6 @@ enum class ConfigError : std::uint8_t {
     too_long,       ///< more than 237 user parameters, 244 cfg octets, inputs or outputs
     no_cfg,         ///< there is no configuration octet
     watchdog,       ///< longer than the factors can say
-    full,           ///< 126 slaves are configured
 };
 const char* name(ConfigError error);
 
