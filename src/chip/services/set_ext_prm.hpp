@@ -18,6 +18,7 @@ Answer serve(C& c) {
     if (!activated(c) || c.s.dp_state != DpState::wait_cfg || c.s.chk_cfg_seen != 0) return Answer::rs;
     const auto d = mac::data(c.s);
     if (d.size() > aux::limit(c, aux::Service::prm)) return Answer::rr;
+    aux::receive(c, aux::Service::prm, d);
     if (!dp::is_owner(c.s, mac::master(c.s))) return Answer::sc;
     if (aux::waiting(c, aux::Service::prm) == AuxUser::cfg) return Answer::rr;
     aux::present_prm(c, AuxUser::ext_prm, d);
