@@ -31,7 +31,7 @@ constexpr Target target(Service service) {
 template <class C>
 unsigned selected(const C& c, Service service) {
     if (service == Service::cfg && c.traits->chk_cfg_aux1) return 0;
-    return (dpram::cell(c.s, regmap::org::r_aux_buf_sel) >> static_cast<unsigned>(service)) & 1u;
+    return core::bit(dpram::cell(c.s, regmap::org::r_aux_buf_sel), static_cast<unsigned>(service)) ? 1u : 0u;
 }
 
 constexpr std::uint16_t pointer_cell(unsigned index) {

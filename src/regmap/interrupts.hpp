@@ -48,7 +48,7 @@ static_assert([] {
         for (std::size_t i = 0; i < kInterruptBits.size(); ++i) {
             const InterruptBit& b = kInterruptBits[i];
             if (b.bit != i || b.name.empty()) return false;
-            if (b.variants.has(static_cast<Variant>(v)) != (((kTraits[v].interrupts >> i) & 1u) != 0)) return false;
+            if (b.variants.has(static_cast<Variant>(v)) != (((unsigned{kTraits[v].interrupts} >> i) & 1u) != 0)) return false;
         }
     return true;
 }());
