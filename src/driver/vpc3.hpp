@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The DP-V0 firmware driver for VPC3+ and APC3: initialises the chip, answers its questions (Set_Prm, Chk_Cfg), moves
-// inputs, outputs and diagnosis (VPC3+C chapters 4 to 6; APC3 chapters 3 to 5; reference 4.14 and 10).
+// The firmware driver for VPC3+ and APC3: initialises the chip, answers its questions (Set_Prm, Chk_Cfg), moves inputs,
+// outputs and diagnosis (VPC3+C chapters 4 to 6; APC3 chapters 3 to 5; reference 4.14 and 10). DP-V1 comes with dpv1.hpp.
 //
 // Freestanding C++20: no heap, no exceptions, no RTTI, no floating point. It never waits: what has to wait is a state
 // that the next poll() or on_interrupt() goes on with. Either of them may be used alone, or both: the functions for the
 // main program mask X/INT while they work. fetch_outputs() and write_inputs() belong to one context only.
 //
-// Not here: DP-V1 services, DXB, isochron mode, clock synchronisation.
+// Not here: DXB, isochron mode, clock synchronisation.
 #pragma once
 
 #include <array>
@@ -19,6 +19,8 @@
 #include <dpchip/dp/cfg.hpp>
 #include <dpchip/dp/set_prm.hpp>
 #include <dpchip/dp/set_slave_add.hpp>
+#include <dpchip/driver/acyclic_events.hpp>
+#include <dpchip/driver/alarm_queue.hpp>
 #include <dpchip/driver/bus_port.hpp>
 #include <dpchip/driver/config.hpp>
 #include <dpchip/driver/diagnosis.hpp>
@@ -47,12 +49,27 @@ enum class State : std::uint8_t {
     going_offline,  ///< Go_Offline given, not yet reached
 };
 
-/// Drives one chip. Bus: a handle, kept by value. App: derived from Events. PendingDiagnoses: see DiagQueue.
-template <BusPort Bus, class App = Events, std::size_t PendingDiagnoses = 1>
+/// A driver for DP-V0: no code, no data. The other choice is Dpv1, in dpv1.hpp.
+struct NoDpv1 {
+    static constexpr bool present = false;
+    template <BusPort Bus, class App>
+    struct Engine {
+        Engine(const Bus&, App&) {}
+    };
+};
+
+/// Drives one chip. Bus: a handle, kept by value. App: derived from Events, with DP-V1 from AcyclicEvents.
+/// PendingDiagnoses: see DiagQueue. D: NoDpv1 or Dpv1<connections, alarms>.
+template <BusPort Bus, class App = Events, std::size_t PendingDiagnoses = 1, class D = NoDpv1>
 class Vpc3 {
+    using Engine = typename D::template Engine<Bus, App>;
+    static constexpr bool kDpv1 = D::present;
+
 public:
     /// `app` must outlive the driver.
-    Vpc3(Bus bus, App& app) : bus_{bus}, app_{&app} { static_assert(Application<App>); }
+    Vpc3(Bus bus, App& app) : bus_{bus}, app_{&app}, acyclic_{bus, app} {
+        static_assert(Application<App> && (!kDpv1 || AcyclicApplication<App>));
+    }
 
     // ---- life ---------------------------------------------------------------------------------------------------
     /// Tests and clears the RAM, writes every register and cell, lays out the buffers. The chip must be Offline.
@@ -80,8 +97,23 @@ public:
     Outputs fetch_outputs(std::span<std::uint8_t> out);
     /// Gives the chip the next inputs(): what `in` lacks is zero, what it has too much is dropped.
     void write_inputs(std::span<const std::uint8_t> in);
-    /// Ext_Diag_Data (without the six octets) and the user's bits. Empty and without bits: the fault is gone.
+    /// Ext_Diag_Data (without the six octets) and the user's bits. Empty and without bits: the fault is gone. Alarm and
+    /// status blocks given to raise() are put behind it.
     DiagResult set_diagnosis(std::span<const std::uint8_t> ext_diag, DiagFlags flags = {});
+
+    // ---- DP-V1 --------------------------------------------------------------------------------------------------
+    /// Time for the timeouts of class-2 connections, when there is no User_Timer_Clock. From the main program.
+    void tick(std::uint32_t ms) requires(D::present);
+    /// Answers a request that was put off with answer_later(). `data`: what a DS_Read or Data_Transport gives. False
+    /// when nobody waits for it any more.
+    bool complete(const Handle& handle, const RecordAnswer& answer, std::span<const std::uint8_t> data = {}) requires(D::present);
+    bool complete(const Handle& handle, const InitiateAnswer& answer) requires(D::present);
+    /// Ends the connection on this SAP with an Abort of instance user. False when there is none.
+    bool abort_connection(std::uint8_t sap, std::uint8_t reason) requires(D::present);
+    /// An alarm or a status message for the master; `seq_nr` is given here. See AlarmQueue.
+    AlarmRaised raise(const dp::AlarmStatus& alarm) requires(D::present);
+    /// To look at.
+    const Engine& dpv1() const requires(D::present) { return acyclic_; }
 
     // ---- what is known ------------------------------------------------------------------------------------------
     State state() const { return state_; }
@@ -170,6 +202,11 @@ private:
     void publish_inputs_again();
     void hand_over_diagnosis();
     bool write_diagnosis(const detail::Diagnosis& d);
+    void note_prm(Octets octets) requires(D::present);
+    void note_cfg() requires(D::present);
+    void finish_acyclic() requires(D::present);
+    bool diag_fetched() requires(D::present);
+    std::uint8_t owner() requires(D::present);
 
     Bus bus_;
     App* app_;
@@ -188,9 +225,11 @@ private:
     detail::Diagnosis latest_{};
     detail::DiagQueue<PendingDiagnoses> queue_{};
     std::array<std::uint8_t, 244> scratch_{};
+    [[no_unique_address]] Engine acyclic_;
 };
 
 }  // namespace dpchip::driver
 
 #include <dpchip/driver/vpc3_configure.hpp>
+#include <dpchip/driver/vpc3_dpv1.hpp>
 #include <dpchip/driver/vpc3_service.hpp>

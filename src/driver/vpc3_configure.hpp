@@ -6,10 +6,13 @@
 
 namespace dpchip::driver {
 
-template <BusPort Bus, class App, std::size_t N>
-ConfigError Vpc3<Bus, App, N>::configure(const Config& config) {
+template <BusPort Bus, class App, std::size_t N, class D>
+ConfigError Vpc3<Bus, App, N, D>::configure(const Config& config) {
     const Layout layout = lay_out(config);
     if (layout.error != ConfigError::none) return layout.error;
+    if constexpr (kDpv1) {
+        if (const ConfigError e = Engine::lay_out(config, layout).error; e != ConfigError::none) return e;
+    } else if (config.dpv1.any()) return ConfigError::no_dpv1;
     const BusMode before = config_.bus_mode;
     config_.bus_mode = config.bus_mode;
     if ((read(ctl::status_reg_low) & regmap::status::passive_idle) != 0) {
@@ -22,6 +25,7 @@ ConfigError Vpc3<Bus, App, N>::configure(const Config& config) {
     inputs_ = layout.inputs;
     outputs_ = layout.outputs;
     address_ = config.address;
+    if constexpr (kDpv1) acyclic_.configure(config.dpv1, Engine::lay_out(config, layout));
     restart_ = prm_accepted_ = following_ = has_diagnosis_ = false;
     queue_.clear();
     if (has_mode2()) write(ctl::mode_reg2, mode2());  // the RAM's size first: it acts at once
@@ -36,8 +40,8 @@ ConfigError Vpc3<Bus, App, N>::configure(const Config& config) {
 
 /// A 16-bit counter over everything behind the registers, high octet first, so that no two cells look alike. `pattern`
 /// inverts it, so that in two runs every bit is seen as 0 and as 1.
-template <BusPort Bus, class App, std::size_t N>
-bool Vpc3<Bus, App, N>::test_ram(std::uint16_t pattern) {
+template <BusPort Bus, class App, std::size_t N, class D>
+bool Vpc3<Bus, App, N, D>::test_ram(std::uint16_t pattern) {
     const std::uint16_t end = layout_.ram_bytes;
     std::uint16_t count = 0;
     for (std::uint16_t a = org::first; a < end; a = static_cast<std::uint16_t>(a + 2), ++count) {
@@ -52,8 +56,8 @@ bool Vpc3<Bus, App, N>::test_ram(std::uint16_t pattern) {
     return true;
 }
 
-template <BusPort Bus, class App, std::size_t N>
-std::uint8_t Vpc3<Bus, App, N>::mode2() const {
+template <BusPort Bus, class App, std::size_t N, class D>
+std::uint8_t Vpc3<Bus, App, N, D>::mode2() const {
     namespace m = regmap::mode2;
     unsigned v = 0;
     if (config_.ram == RamSize::bytes_4096) v |= m::mode_4kb;
@@ -65,8 +69,8 @@ std::uint8_t Vpc3<Bus, App, N>::mode2() const {
     return static_cast<std::uint8_t>(v);
 }
 
-template <BusPort Bus, class App, std::size_t N>
-std::uint16_t Vpc3<Bus, App, N>::mode0() const {
+template <BusPort Bus, class App, std::size_t N, class D>
+std::uint16_t Vpc3<Bus, App, N, D>::mode0() const {
     namespace m0 = regmap::mode0;
     const Config& c = config_;
     unsigned v = m0::dp_mode;
@@ -85,8 +89,8 @@ std::uint16_t Vpc3<Bus, App, N>::mode0() const {
     return static_cast<std::uint16_t>(v);
 }
 
-template <BusPort Bus, class App, std::size_t N>
-void Vpc3<Bus, App, N>::write_registers() {
+template <BusPort Bus, class App, std::size_t N, class D>
+void Vpc3<Bus, App, N, D>::write_registers() {
     namespace irq = regmap::interrupt;
     const Config& c = config_;
     handled_ = irq::mac_reset | irq::go_leave_data_exch | irq::baud_rate_detect | irq::wd_dp_control_timeout |
@@ -94,6 +98,7 @@ void Vpc3<Bus, App, N>::write_registers() {
                irq::diag_buffer_changed | irq::dx_out;
     if (c.set_ext_prm) handled_ |= irq::new_ext_prm_data;
     if (c.user_timer != UserTimer::off) handled_ |= irq::user_timer_clock;
+    if (kDpv1 && c.dpv1.any()) handled_ |= irq::poll_end_ind | irq::fdl_ind;
     imr_ = c.service == Service::polled ? std::uint16_t{0xFFFF}
                                         : static_cast<std::uint16_t>(~(handled_ & ~unsigned{c.masked}));
 
@@ -113,13 +118,14 @@ void Vpc3<Bus, App, N>::write_registers() {
     write(ctl::min_tsdr_val, c.min_tsdr);
 }
 
-template <BusPort Bus, class App, std::size_t N>
-void Vpc3<Bus, App, N>::write_cells() {
+template <BusPort Bus, class App, std::size_t N, class D>
+void Vpc3<Bus, App, N, D>::write_cells() {
     std::array<std::uint8_t, org::last - org::first + 1> cells{};
     const auto set = [&](std::uint16_t address, std::uint8_t value) { cells[at(address) - std::size_t{org::first}] = value; };
     const Layout& l = layout_;
     set(org::r_ts_adr, config_.address);
     set(org::sap_list_ptr, l.sap_list);
+    if constexpr (kDpv1) set(org::sap_list_ptr, acyclic_.layout().list);
     set(org::r_user_wd_value_low, core::low(config_.user_watchdog));
     set(org::r_user_wd_value_high, core::high(config_.user_watchdog));
     set(org::r_len_dout_buf, outputs_);
@@ -148,8 +154,8 @@ void Vpc3<Bus, App, N>::write_cells() {
     bus_.write_block(org::first, cells);
 }
 
-template <BusPort Bus, class App, std::size_t N>
-bool Vpc3<Bus, App, N>::start() {
+template <BusPort Bus, class App, std::size_t N, class D>
+bool Vpc3<Bus, App, N, D>::start() {
     const Quiet quiet{*this};
     if (state_ != State::offline) return false;
     restart_ = prm_accepted_ = false;
@@ -159,6 +165,7 @@ bool Vpc3<Bus, App, N>::start() {
         write(static_cast<std::uint16_t>(org::r_len_diag_buf1 + i), 6);
     }
     if (has_diagnosis_ && queue_.empty()) queue_.push(latest_);
+    if constexpr (kDpv1) acyclic_.start(address_);
     write(ctl::mode_reg1_s, config_.user_watchdog != 0
                                 ? std::uint8_t{regmap::mode1::start_vpc3 | regmap::mode1::res_user_wd}
                                 : regmap::mode1::start_vpc3);
@@ -168,8 +175,8 @@ bool Vpc3<Bus, App, N>::start() {
     return true;
 }
 
-template <BusPort Bus, class App, std::size_t N>
-void Vpc3<Bus, App, N>::go_offline() {
+template <BusPort Bus, class App, std::size_t N, class D>
+void Vpc3<Bus, App, N, D>::go_offline() {
     const Quiet quiet{*this};
     restart_ = false;
     if (state_ != State::online) return;
@@ -177,16 +184,16 @@ void Vpc3<Bus, App, N>::go_offline() {
     write(ctl::mode_reg1_s, regmap::mode1::go_offline);
 }
 
-template <BusPort Bus, class App, std::size_t N>
-void Vpc3<Bus, App, N>::restart() {
+template <BusPort Bus, class App, std::size_t N, class D>
+void Vpc3<Bus, App, N, D>::restart() {
     const Quiet quiet{*this};
     if (state_ == State::offline) { start(); return; }
     go_offline();
     restart_ = state_ == State::going_offline;
 }
 
-template <BusPort Bus, class App, std::size_t N>
-void Vpc3<Bus, App, N>::leave_master() {
+template <BusPort Bus, class App, std::size_t N, class D>
+void Vpc3<Bus, App, N, D>::leave_master() {
     if (state_ == State::online) write(ctl::mode_reg1_s, regmap::mode1::user_leave_master);
 }
 

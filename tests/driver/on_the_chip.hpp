@@ -74,15 +74,17 @@ struct Kind {
     BusMode bus_mode;
 };
 
-class OnTheChip {
+/// A chip with the firmware `Driver` and the application `Application` on it.
+template <class Application, class Driver>
+class Bench {
 public:
     Chip<> chip;
-    App app;
-    Drv drv{ChipBus{&chip}, app};
+    Application app;
+    Driver drv{ChipBus{&chip}, app};
     bool serving = true;  // the firmware runs; else it is stuck
     std::uint8_t master = 2, slave = 8, fc = 0x6D;
 
-    explicit OnTheChip(const Kind& kind) : chip{kind.variant, fast_search()}, kind_{kind} {
+    explicit Bench(const Kind& kind) : chip{kind.variant, fast_search()}, kind_{kind} {
         app.drv = &drv;
         chip.set_bus_mode(kind.bus_mode == BusMode::motorola ? chip::BusMode::motorola : chip::BusMode::intel);
     }
@@ -147,6 +149,25 @@ public:
         t.insert(t.end(), {fcs, 0x16});
         return transmit(t);
     }
+    /// Sends whole telegrams as they are; the answer, or nothing.
+    Octets transmit(const Octets& octets) {
+        run(bit_ * 60);
+        fdl::Transmission t;
+        t.assign(chip.now(), bit_, octets);
+        chip.carrier(t.start);
+        run(t.end() - chip.now());
+        chip.hear(t);
+        const Ticks patience = chip.now() + bit_ * 400;
+        fdl::Transmission answer;
+        while (chip.next() <= patience) {
+            step(chip.next());
+            if (!chip.take(answer)) continue;
+            run(answer.end() - chip.now());
+            return {answer.bytes().begin(), answer.bytes().end()};
+        }
+        step(patience);
+        return {};
+    }
     /// Lets time pass while the firmware runs.
     void run(Ticks duration) {
         const Ticks end = chip.now() + duration;
@@ -189,30 +210,12 @@ private:
         chip.advance(to);
         serve();
     }
-    Octets transmit(const Octets& octets) {
-        run(bit_ * 60);
-        fdl::Transmission t;
-        t.assign(chip.now(), bit_, octets);
-        chip.carrier(t.start);
-        run(t.end() - chip.now());
-        chip.hear(t);
-        const Ticks patience = chip.now() + bit_ * 400;
-        fdl::Transmission answer;
-        while (chip.next() <= patience) {
-            step(chip.next());
-            if (!chip.take(answer)) continue;
-            run(answer.end() - chip.now());
-            return {answer.bytes().begin(), answer.bytes().end()};
-        }
-        step(patience);
-        return {};
-    }
-
     Kind kind_;
     Ticks say_at_ = core::kNever;
     Octets said_;
     Ticks bit_ = fdl::baud(fdl::BaudCode::mbit_1_5).bit;
 };
+using OnTheChip = Bench<App, Drv>;
 
 inline constexpr Kind kKinds[]{
     {"vpc3c_2k", Variant::vpc3c, RamSize::bytes_2048, Service::interrupt, BusMode::intel},
