@@ -165,5 +165,15 @@ TEST_P(Checks, C086_Go_Offline_ends_everything) {
     EXPECT_EQ(b.chip().level(chip::Pin::rts), chip::Level::low);
 }
 
+// proves: E079
+TEST_P(Checks, a_repetition_on_a_SAP_that_is_not_enabled_any_more_is_answered_RS) {
+    Bench b{recipe(), Stage::p2};
+    EXPECT_EQ(b.ask("68 05 05 68 08 02 7D 12 34 CD 16"), kInputs);
+    EXPECT_EQ(b.ask_again(), kInputs);
+    b.write(control::mode_reg1_s, 0x08);  // User_LEAVE-MASTER
+    EXPECT_EQ(b.dp_state(), kWaitPrm);
+    EXPECT_EQ(b.ask_again(), kRs);
+}
+
 }  // namespace
 }  // namespace dpchip::checks
