@@ -19,8 +19,8 @@ namespace dpchip::slave {
 
 /// What a virtual slave is made of, besides its GSD.
 struct SlaveSetup {
-    std::string name;                  ///< for people; empty: the GSD's Model_Name
-    std::vector<std::string> modules;  ///< as gsd::configure takes them; empty: the preset or only module
+    std::string name{};                ///< for people; empty: the GSD's Model_Name
+    std::vector<std::string> modules{};  ///< as gsd::configure takes them; empty: the preset or only module
     std::uint8_t address = 126;
     regmap::Variant variant = regmap::Variant::vpc3c;
     regmap::Options options{};         ///< of the chip's model
