@@ -54,6 +54,7 @@ struct MasterConfig {
     std::uint8_t gap_factor = 0;             ///< one GAP poll every so many cycles; 0: none
     std::uint8_t hsa = 126;                  ///< highest address of GAP polls
     std::uint8_t absent_polls = 1;           ///< slaves known to be absent that are asked for in one cycle
+    std::uint8_t acyclic_per_cycle = 1;      ///< requests of jobs and relations in one cycle, at least 1
     Ticks min_cycle{};                       ///< least time from token to token
     Mode mode = Mode::operate;
 };

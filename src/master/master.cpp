@@ -27,6 +27,7 @@ Master::Master(const MasterConfig& config) : config_{config}, mode_{config.mode}
     config_.address = std::min<std::uint8_t>(config_.address, dp::kMaxSlaveAddress);
     config_.max_retry = std::min<std::uint8_t>(config_.max_retry, 15);
     config_.hsa = std::min(config_.hsa, kLastAddress);
+    config_.acyclic_per_cycle = std::max<std::uint8_t>(config_.acyclic_per_cycle, 1);
     bit_ = fdl::baud(config_.baud).bit;
     slot_ = config_.slot_time == Ticks{} ? bits(config_.times.tsl) : config_.slot_time;
     min_cycle_ = config_.min_cycle;
@@ -115,6 +116,7 @@ void Master::begin_cycle() {
     step_ = Step::token;
     turn_ = 0;
     absent_left_ = std::min<std::size_t>(config_.absent_polls, slaves_.size());
+    acyclic_left_ = config_.acyclic_per_cycle;
     if (mode_ == announced_) return;
     announced_ = mode_;
     if (mode_ == Mode::clear) global_control({dp::kGcClearData, 0});
@@ -148,7 +150,7 @@ bool Master::step_has_work() {
         if (commands_.empty()) return false;
         command_ = commands_.pop();
         return true;
-    case Step::job: return job_due();
+    case Step::job: return acyclic_left_ != 0 && acyclic_due();
     case Step::scan:
         if (!scanning()) return false;
         job_ = &scan_job_;
@@ -173,10 +175,30 @@ bool Master::absent_due() {
     return false;
 }
 
+/// Jobs and relations take turns.
+bool Master::acyclic_due() {
+    if (relations_first_) return relation_due() || job_due();
+    return job_due() || relation_due();
+}
+
 bool Master::job_due() {
     if (jobs_.empty()) return false;
     job_ = jobs_.pop();
+    relations_first_ = true;
     return true;
+}
+
+bool Master::relation_due() {
+    for (std::size_t n = relations_.size(); n != 0; --n) {
+        if (relation_turn_ >= relations_.size()) relation_turn_ = 0;
+        Relation* const relation = relations_[relation_turn_++];
+        job_ = relation->next_job(present());
+        if (job_ == nullptr) continue;
+        asking_ = relation;
+        relations_first_ = false;
+        return true;
+    }
+    return false;
 }
 
 /// The present step is through; the line is quiet from `end` on and must be for `idle_bits`.
@@ -186,9 +208,9 @@ void Master::step_done(Ticks end, std::int64_t idle_bits) {
     case Step::slave: ++turn_; break;
     case Step::absent: --absent_left_; break;
     case Step::command: break;
+    case Step::job: --acyclic_left_; break;
     case Step::claim:
     case Step::token:
-    case Step::job:
     case Step::scan:
     case Step::gap:
     case Step::end: step_ = static_cast<Step>(static_cast<unsigned>(step_) + (step_ == Step::end ? 0u : 1u)); break;

@@ -4,10 +4,10 @@
 //
 // The cycle allocates nothing. The application reads inputs and writes outputs between cycles, best in the hook.
 // It needs no other clock than advance(), so the same master works on a live line, given a longer slot time.
-// Not modelled: other masters (it keeps quiet while it hears one and takes the bus when it is silent), the class-2
-// services, DP-V1 connections (their polls belong where jobs are).
+// Not modelled: other masters (it keeps quiet while it hears one and takes the bus when it is silent).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,9 @@
 #include <dpchip/dp/global_control.hpp>
 #include <dpchip/fdl/transmission.hpp>
 #include <dpchip/master/config.hpp>
+#include <dpchip/master/frame_count.hpp>
 #include <dpchip/master/job.hpp>
+#include <dpchip/master/relation.hpp>
 #include <dpchip/master/slave_handler.hpp>
 
 namespace dpchip::master {
@@ -77,6 +79,10 @@ public:
     /// waiting or the address is above 127.
     bool submit(Job& job);
     void cancel(Job& job);
+    /// Lets an acyclic relation take its turns with the others, one request at a time, beside the jobs. It stays the
+    /// caller's and must live until detach(). Allocates.
+    void attach(Relation& relation);
+    void detach(Relation& relation);
     /// Asks every address but its own for FDL_Status and Slave_Diag, one request a cycle.
     void start_scan();
     bool scanning() const { return scan_address_ != kNotScanning; }
@@ -112,6 +118,7 @@ private:
     static constexpr std::uint8_t kLastAddress = 126;
 
     Ticks bits(std::int64_t n) const { return bit_ * n; }
+    Ticks present() const { return std::max(now_, heard_); }
     bool active() const { return mode_ == Mode::clear || mode_ == Mode::operate; }
 
     // the cycle
@@ -120,7 +127,9 @@ private:
     void choose();
     bool step_has_work();
     bool absent_due();
+    bool acyclic_due();
     bool job_due();
+    bool relation_due();
     void step_done(Ticks end, std::int64_t idle_bits);
     void measure();
 
@@ -140,6 +149,8 @@ private:
     std::size_t compose_job(std::span<std::uint8_t> out) const;
     void job_answered(const fdl::Telegram& t);
     void job_finished(Job::Outcome outcome);
+    std::uint8_t job_fc() const;
+    void forsake(Job& job);
     void scan_goes_on();
     void scan_next();
 
@@ -154,9 +165,11 @@ private:
     std::size_t turn_ = 0;           ///< slave whose turn it is
     std::size_t absent_turn_ = 0;    ///< absent slave asked for last
     std::size_t absent_left_ = 0;    ///< absent slaves still to be asked for in this cycle
+    std::uint8_t acyclic_left_ = 0;  ///< acyclic requests still possible in this cycle
     bool outstanding_ = false;       ///< a request is out and not done with
     std::uint8_t retries_left_ = 0;
     Ticks now_{};
+    Ticks heard_{};                  ///< end of what was heard last
     Ticks send_at_ = core::kNever;   ///< waiting: the next request; draining: end of the present telegram
     Ticks deadline_ = core::kNever;  ///< asking: end of the slot time; hearing: when to stop believing in it
     Ticks slot_end_{};               ///< of the present request
@@ -164,10 +177,15 @@ private:
 
     std::vector<std::unique_ptr<SlaveHandler>> slaves_;
     std::array<std::int16_t, 128> by_address_;  ///< slave number, or -1
+    std::array<FrameCount, 128> frames_{};      ///< towards stations that are no slaves of this master
     core::FixedQueue<dp::GlobalControl, 8> commands_;
     dp::GlobalControl command_{};    ///< the one being sent
     core::FixedQueue<Job*, 16> jobs_;
-    Job* job_ = nullptr;             ///< the one being asked, the scan's included
+    Job* job_ = nullptr;             ///< the one being asked, the scan's and the relations' included
+    std::vector<Relation*> relations_;
+    std::size_t relation_turn_ = 0;  ///< the next to be asked whether it has something to ask
+    Relation* asking_ = nullptr;     ///< whose job it is
+    bool relations_first_ = false;   ///< jobs had their turn
     Job scan_job_{};
     Job spare_job_{};               ///< takes the answer of a job that was cancelled too late
     std::uint8_t scan_address_ = kNotScanning;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One request and what becomes of it: answer, repetition, silence. And the requests that are not cyclic.
 #include <algorithm>
+#include <utility>
 
 #include <dpchip/dp/diag.hpp>
 #include <dpchip/master/master.hpp>
@@ -90,6 +91,7 @@ void Master::carrier(Ticks at) {
 
 void Master::hear(const fdl::Transmission& t) {
     if (phase_ == Phase::silent) return;
+    heard_ = t.end();
     const auto telegram = fdl::decode(t.bytes());
     if (outstanding_ && telegram && expected(*telegram)) return answered(*telegram, t.end());
     ++counters_.foreign;
@@ -160,21 +162,37 @@ void Master::cancel(Job& job) {
         Job* const other = jobs_.pop();
         if (other != &job) jobs_.push(other);
     }
-    if (job_ == &job) {  // it is being asked: the answer goes to a job of the master's own
-        spare_job_ = job;
-        job_ = &spare_job_;
-    }
+    if (job_ == &job) forsake(job);
     job.outcome = Job::Outcome::idle;
+}
+
+/// It is being asked: the answer goes to a job of the master's own.
+void Master::forsake(Job& job) {
+    spare_job_ = job;
+    job_ = &spare_job_;
+}
+
+void Master::attach(Relation& relation) {
+    if (std::ranges::find(relations_, &relation) == relations_.end()) relations_.push_back(&relation);
+}
+
+void Master::detach(Relation& relation) {
+    std::erase(relations_, &relation);
+    if (asking_ != &relation) return;
+    asking_ = nullptr;
+    if (job_ != nullptr) forsake(*job_);
+}
+
+std::uint8_t Master::job_fc() const {
+    const Job& job = *job_;
+    if (!fdl::uses_frame_count(job.function)) return fdl::request_fc(job.function, false, false);
+    const std::int16_t n = by_address_[job.address & 0x7Fu];
+    return n < 0 ? frames_[job.address & 0x7Fu].fc(job.function) : slaves_[static_cast<std::size_t>(n)]->frame_count(job.function);
 }
 
 std::size_t Master::compose_job(std::span<std::uint8_t> out) const {
     const Job& job = *job_;
-    std::uint8_t fc = fdl::request_fc(job.function, false, false);
-    if (fdl::uses_frame_count(job.function)) {
-        const std::int16_t n = job.address < by_address_.size() ? by_address_[job.address] : std::int16_t{-1};
-        fc = n < 0 ? fdl::request_fc(job.function, true, false)
-                   : slaves_[static_cast<std::size_t>(n)]->frame_count(job.function);
-    }
+    const std::uint8_t fc = job_fc();
     const auto data = std::span{job.request}.first(std::min<std::size_t>(job.request_size, job.request.size()));
     if (job.function == fdl::Request::fdl_status) return fdl::encode_sd1(out, job.address, config_.address, fc);
     if (job.dsap == dp::kDefaultSap) return fdl::encode(out, job.address, config_.address, fc, data);
@@ -197,10 +215,14 @@ void Master::job_answered(const fdl::Telegram& t) {
 
 void Master::job_finished(Job::Outcome outcome) {
     Job& job = *job_;
-    if (fdl::uses_frame_count(job.function))
-        if (SlaveHandler* const slave = find(job.address)) slave->count_frame(outcome != Job::Outcome::unanswered);
+    if (fdl::uses_frame_count(job.function)) {
+        const bool answered = outcome != Job::Outcome::unanswered;
+        if (SlaveHandler* const slave = find(job.address)) slave->count_frame(answered);
+        else frames_[job.address & 0x7Fu].count(answered);
+    }
     job.outcome = outcome;
     job_ = nullptr;
+    if (Relation* const relation = std::exchange(asking_, nullptr)) return relation->job_done(present());
     if (&job == &scan_job_) scan_goes_on();
 }
 

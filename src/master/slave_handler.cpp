@@ -44,13 +44,6 @@ bool SlaveHandler::diagnosis_due() const {
 
 // ---- requests ----------------------------------------------------------------------------------------------------
 
-std::uint8_t SlaveHandler::frame_count(Request r) const { return fdl::request_fc(r, fcb_, counting_); }
-
-void SlaveHandler::count_frame(bool answered) {
-    fcb_ = !answered || !fcb_;
-    counting_ = answered;
-}
-
 std::size_t SlaveHandler::compose(std::span<std::uint8_t> out, std::uint8_t master, Mode mode) const {
     if (state_ == SlaveState::absent)
         return fdl::encode_sd1(out, config_.address, master, fdl::request_fc(Request::fdl_status, false, false));

@@ -13,6 +13,7 @@
 #include <dpchip/dp/saps.hpp>
 #include <dpchip/fdl/telegram.hpp>
 #include <dpchip/master/config.hpp>
+#include <dpchip/master/frame_count.hpp>
 
 namespace dpchip::master {
 
@@ -82,9 +83,9 @@ public:
     /// Asked for so often that it makes no sense to ask every cycle.
     bool given_up() const { return state_ == SlaveState::absent && tried_; }
     /// FC of a request with frame count bit; for jobs, which share the count with the cycle.
-    std::uint8_t frame_count(fdl::Request r) const;
+    std::uint8_t frame_count(fdl::Request r) const { return frames_.fc(r); }
     /// A request with frame count bit was answered, or given up.
-    void count_frame(bool answered);
+    void count_frame(bool answered) { frames_.count(answered); }
 
 private:
     void on_status(const fdl::Telegram& t);
@@ -102,8 +103,7 @@ private:
     SlaveFault fault_ = SlaveFault::none;
     bool tried_ = false;
     bool diagnosis_wanted_ = false;
-    bool counting_ = false;  ///< the frame count bit is agreed on
-    bool fcb_ = true;
+    FrameCount frames_{};
     std::size_t diagnosis_size_ = 0;
     SlaveCounters counters_;
     std::array<std::uint8_t, 244> outputs_{}, inputs_{}, diagnosis_{};
