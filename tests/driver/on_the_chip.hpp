@@ -149,6 +149,12 @@ public:
         t.insert(t.end(), {fcs, 0x16});
         return transmit(t);
     }
+    /// Function code of the next SRD request.
+    std::uint8_t next_fc() {
+        const std::uint8_t now = fc;
+        fc = fc == 0x5D ? 0x7D : 0x5D;
+        return now;
+    }
     /// Sends whole telegrams as they are; the answer, or nothing.
     Octets transmit(const Octets& octets) {
         run(bit_ * 60);
@@ -196,11 +202,6 @@ private:
         regmap::Options o;
         o.baud_probe_ms.fill(1);
         return o;
-    }
-    std::uint8_t next_fc() {
-        const std::uint8_t now = fc;
-        fc = fc == 0x5D ? 0x7D : 0x5D;
-        return now;
     }
     void step(Ticks to) {
         if (say_at_ <= to) {

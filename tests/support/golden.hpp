@@ -7,7 +7,8 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -17,8 +18,9 @@ namespace dpchip::test {
 
 /// The file's octets; empty when there is no such file.
 inline std::string read_file(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+    std::ostringstream out;
+    out << std::ifstream(path, std::ios::binary).rdbuf();
+    return out.str();
 }
 
 /// `text` against tests/golden/`name`. Use as EXPECT_TRUE(matches_golden("fdl/start_up.trace", text)).
