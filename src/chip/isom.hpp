@@ -32,19 +32,22 @@ void set_sync(C& c, bool active) {
     outputs::changed(c, Fact::xdataexch_sync, Pin::xdataexch_sync);
 }
 
-/// Isochron Mode: a pulse on every SYNCH; Sync_PW = 0 gives none.
+template <class C>
+Ticks pulse_width(const C& c) { return core::kClk * (kSyncPwClk * c.s.sync_pw); }
+
+/// Isochron Mode: a pulse on every SYNCH, which begins anew when the last one is not over; Sync_PW = 0 gives none.
 template <class C>
 void start_pulse(C& c) {
     if (c.s.sync_pw == 0) return;
-    const Ticks at = c.s.request_end + core::kClk * c.options.sync_pulse_delay_clk;
-    timers::start(c.s, Timer::sync, std::max(c.s.now, at));
+    const Ticks at = std::max(c.s.now, c.s.request_end + core::kClk * c.options.sync_pulse_delay_clk);
+    timers::start(c.s, Timer::sync, c.s.sync_active != 0 ? at + pulse_width(c) : at);
 }
 
 template <class C>
 void pulse_edge(C& c) {
     const bool begins = c.s.sync_active == 0;
     set_sync(c, begins);
-    if (begins) timers::start(c.s, Timer::sync, c.s.now + core::kClk * (kSyncPwClk * c.s.sync_pw));
+    if (begins) timers::start(c.s, Timer::sync, c.s.now + pulse_width(c));
     else timers::stop(c.s, Timer::sync);
 }
 

@@ -67,11 +67,11 @@ std::string access(Variant variant, Dir dir, const TraceRecord& r) {
     return hex_number(r.a, 3) + ' ' + std::string{regmap::name(variant, dir, r.a)} + " = " + hex_number(r.b);
 }
 
-std::string interrupts(Variant variant, const TraceRecord& r) {
+std::string interrupts(Variant variant, bool clock_sync, const TraceRecord& r) {
     std::string words = change(hex_number(r.a, 4), hex_number(r.b, 4));
     for (unsigned bit = 0; bit < 16; ++bit) {
         if (core::bit(r.a, bit) == core::bit(r.b, bit)) continue;
-        const std::string_view name = regmap::interrupt_name(variant, bit);
+        const std::string_view name = bit == 0 && clock_sync ? regmap::kClockSync.name : regmap::interrupt_name(variant, bit);
         words += core::bit(r.b, bit) ? " +" : " -";
         words += name.empty() ? "bit " + std::to_string(bit) : std::string{name};
     }
@@ -82,7 +82,8 @@ std::string telegram(const TraceRecord& r) {
     const fdl::FunctionCode fc{static_cast<std::uint8_t>(r.b >> 24)};
     const auto dsap = static_cast<std::uint8_t>(r.b >> 16), ssap = static_cast<std::uint8_t>(r.b >> 8);
     std::string words = std::to_string(r.a & 0x7Fu) + "->" + std::to_string((r.a >> 8) & 0x7Fu) + " FC " + hex_number(fc.octet);
-    if (fc.is_request()) words += std::string{" "} + fdl::name(fc.request());
+    if (fc.clock_value()) words += " Clock_Value";
+    else if (fc.is_request()) words += std::string{" "} + fdl::name(fc.request());
     else words += std::string{" "} + fdl::name(fc.response());
     if (dsap != 0xFF) words += std::string{" DSAP "} + std::to_string(dsap) + ' ' + (fc.is_request() ? dp::name(dp::service(dsap)) : "");
     if (words.back() == ' ') words.pop_back();
@@ -102,7 +103,7 @@ std::string finding(const TraceRecord& r) {
     return std::string{rule.name} + ' ' + hex_number(r.b, 4) + ": " + std::string{rule.text};
 }
 
-std::string value_words(const TraceRecord& r, Variant variant) {
+std::string value_words(const TraceRecord& r, Variant variant, bool clock_sync) {
     namespace control = regmap::control;
     switch (static_cast<Fact>(r.what)) {
     case Fact::reset:
@@ -111,7 +112,7 @@ std::string value_words(const TraceRecord& r, Variant variant) {
     case Fact::answer_given_up: return {};
     case Fact::cpu_read: return access(variant, Dir::read, r);
     case Fact::cpu_write: return access(variant, Dir::write, r);
-    case Fact::irr: return interrupts(variant, r);
+    case Fact::irr: return interrupts(variant, clock_sync, r);
     case Fact::x_int:
     case Fact::rts:
     case Fact::xdataexch_sync: return r.b != 0 ? "high" : "low";
@@ -166,21 +167,26 @@ std::string time_text(core::Ticks at) {
     return std::to_string(ns) + '.' + fraction.substr(1) + " ns";
 }
 
-std::string fact_words(const TraceRecord& record, Variant variant) {
+std::string fact_words(const TraceRecord& record, Variant variant, bool clock_sync) {
     if (record.what >= kNames.size()) return std::string{"fact "} + std::to_string(record.what);
     std::string words = kNames[record.what];
-    add_word(words, value_words(record, variant), " ");
+    add_word(words, value_words(record, variant, clock_sync), " ");
     return words;
 }
 
 std::string FactText::line(const TraceRecord& record) {
     const auto fact = static_cast<Fact>(record.what);
     if ((fact == Fact::baud || fact == Fact::baud_probe) && record.b < fdl::kBaudRates) rate_ = static_cast<fdl::BaudCode>(record.b);
-    if (fact == Fact::reset) t0_.reset();
+    if (fact == Fact::reset) {
+        t0_.reset();
+        clock_sync_ = false;
+    }
+    if (fact == Fact::cpu_write && record.a == regmap::control::mode_reg0_low)
+        clock_sync_ = regmap::traits(variant_).clock_sync && (record.b & regmap::mode0::cs_supported) != 0;
     if (fact == Fact::heard || fact == Fact::proof) t0_ = record.at;
     std::string bits = "-";
     if (rate_ && t0_ && record.at >= *t0_) bits = std::string{"+"} + bit_times(record.at - *t0_, fdl::baud(*rate_).bit);
-    return right(time_text(record.at), 20) + right(bits, 13) + " tBit  " + fact_words(record, variant_);
+    return right(time_text(record.at), 20) + right(bits, 13) + " tBit  " + fact_words(record, variant_, clock_sync_);
 }
 
 }  // namespace dpchip::trace

@@ -16,8 +16,8 @@ namespace dpchip::trace {
 /// "573958.333 ns": three digits are enough to tell any two ticks of 1/60 ns apart.
 std::string time_text(core::Ticks at);
 
-/// The words of one fact, without its time: "dp_state WAIT-PRM -> WAIT-CFG".
-std::string fact_words(const core::TraceRecord& record, regmap::Variant variant);
+/// The words of one fact, without its time: "dp_state WAIT-PRM -> WAIT-CFG". With CS_Supported interrupt bit 0 is Clock_Sync.
+std::string fact_words(const core::TraceRecord& record, regmap::Variant variant, bool clock_sync = false);
 
 /// Renders records in the order in which they were made. Behind the time stands the distance in bit times from t0, the
 /// end of the last telegram heard, because everything the reference demands is counted from there.
@@ -31,6 +31,7 @@ private:
     regmap::Variant variant_;
     std::optional<fdl::BaudCode> rate_;   ///< found, or being tried
     std::optional<core::Ticks> t0_;
+    bool clock_sync_ = false;             ///< CS_Supported was written
 };
 
 }  // namespace dpchip::trace

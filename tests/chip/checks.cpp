@@ -35,6 +35,7 @@ std::string name(const ::testing::TestParamInfo<Case>& info) {
 INSTANTIATE_TEST_SUITE_P(Chip, Checks, ::testing::ValuesIn(cases(regmap::kAllVariants)), name);
 INSTANTIATE_TEST_SUITE_P(Chip, ChecksVpc3, ::testing::ValuesIn(cases(regmap::kVpc3)), name);
 INSTANTIATE_TEST_SUITE_P(Chip, ChecksStepBC, ::testing::ValuesIn(cases(regmap::kStepBC)), name);
+INSTANTIATE_TEST_SUITE_P(Chip, ChecksClockSync, ::testing::ValuesIn(cases(regmap::in(regmap::Variant::vpc3c))), name);
 INSTANTIATE_TEST_SUITE_P(Chip, ChecksPlainPrm, ::testing::ValuesIn(cases(without_prm_reserved_checks())), name);
 INSTANTIATE_TEST_SUITE_P(Chip, ChecksSpc3Class, ::testing::ValuesIn(cases(regmap::kSpc3Class)), name);
 

@@ -37,6 +37,8 @@ protected:
 class ChecksVpc3 : public Checks {};
 /// Checks for VPC3+B and VPC3+C: 4 KB RAM, SAP 53, Mode Register 3, checks 5 to 8 of Set_Prm.
 class ChecksStepBC : public Checks {};
+/// Checks for chips with clock synchronisation: VPC3+C.
+class ChecksClockSync : public Checks {};
 /// Checks for chips without checks 5 to 8 of Set_Prm.
 class ChecksPlainPrm : public Checks {};
 /// Checks for APC3 and SPC3.

@@ -58,6 +58,16 @@ TEST(FactText, HasADifferentNameForEveryFact) {
     EXPECT_EQ(names.size(), static_cast<std::size_t>(Fact::count));
 }
 
+TEST(FactText, NamesInterruptBit0ByWhatModeRegister0Says) {
+    FactText text{Variant::vpc3c};
+    EXPECT_NE(text.line(fact(Fact::irr, 0, 1)).find("+MAC_Reset"), std::string::npos);
+    text.line(fact(Fact::cpu_write, regmap::control::mode_reg0_low, regmap::mode0::cs_supported));
+    EXPECT_NE(text.line(fact(Fact::irr, 0, 1)).find("+Clock_Sync"), std::string::npos);
+    text.line(fact(Fact::reset, 0, 0));
+    EXPECT_NE(text.line(fact(Fact::irr, 0, 1)).find("+MAC_Reset"), std::string::npos);
+    EXPECT_EQ(fact_words(fact(Fact::heard, 0x7F02, 0xC0FFFF12), Variant::vpc3c), "heard 2->127 FC C0H Clock_Value, 18 octets");
+}
+
 TEST(FactText, TellsAnyTwoTicksApart) {
     std::set<std::string> seen;
     for (std::int64_t n = -120; n < 120; ++n) seen.insert(time_text({n}));
