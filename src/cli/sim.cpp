@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// `dpchip sim`: a scenario in virtual time, and what came of it.
+#include <chrono>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <dpchip/cli/commands.hpp>
+#include <dpchip/cli/live_view.hpp>
+#include <dpchip/cli/log.hpp>
+#include <dpchip/cli/settings.hpp>
+#include <dpchip/cli/simulation.hpp>
+
+namespace dpchip::cli {
+namespace {
+
+struct Arguments {
+    std::string file, duration, baud, trace;
+    int link_type = 147;
+    std::uint64_t cycles = 0;
+    std::vector<std::string> options;
+    bool json = false;
+};
+
+std::uint64_t exchanges(const Simulation::Member& m) { return m.exchanges + (m.on ? m.slave->counters().exchanges : 0); }
+
+std::string state(const Simulation::Member& m) {
+    if (!m.on) return "no power";
+    if (!m.plugged) return "unplugged";
+    return name(m.slave->dp_state());
+}
+
+double in_us(Ticks t) { return static_cast<double>(t.n) / static_cast<double>(core::kTicksPerNs) / 1e3; }
+
+void report_text(const Simulation& s, double seconds) {
+    const master::Master& m = s.master();
+    Rows rows{{"ADDR", "NAME", "SLAVE", "MASTER SAYS", "EXCHANGES", "COMPARED", "WRONG", "RETRIES", "LOST"}};
+    for (std::size_t n = 0; n < s.members().size(); ++n) {
+        const Application::Checked& c = s.application().checked(n);
+        rows.push_back({std::to_string(m.slave(n).config().address), m.slave(n).config().name, state(s.members()[n]), master::name(m.slave(n).state()),
+                        std::to_string(exchanges(s.members()[n])), std::to_string(c.compared), std::to_string(c.wrong),
+                        std::to_string(m.slave(n).counters().retries), std::to_string(m.slave(n).counters().lost)});
+    }
+    print(rows);
+    const double virtual_s = in_us(s.now()) / 1e6;
+    std::printf("%s of line time at %s in %.2f s (%.1f times as fast)\n", time_text(s.now()).c_str(), fdl::baud(m.config().baud).name.data(), seconds,
+                seconds > 0 ? virtual_s / seconds : 0.0);
+    if (s.reached()) std::printf("all slaves in data exchange after %s\n", time_text(*s.reached()).c_str());
+    const master::CycleStatistics& cycle = m.cycle();
+    if (cycle.cycles != 0)
+        std::printf("%llu cycles, %.6f to %.6f us each, %lld to %lld tBit\n", static_cast<unsigned long long>(cycle.cycles), in_us(cycle.min), in_us(cycle.max),
+                    static_cast<long long>(cycle.min / fdl::baud(m.config().baud).bit), static_cast<long long>(cycle.max / fdl::baud(m.config().baud).bit));
+    std::printf("%llu inputs compared, %llu wrong; %llu faults injected; the judge saw %llu telegrams and %llu violations\n",
+                static_cast<unsigned long long>(s.application().compared()), static_cast<unsigned long long>(s.application().wrong()),
+                static_cast<unsigned long long>(s.faults()), static_cast<unsigned long long>(s.judge().telegrams()),
+                static_cast<unsigned long long>(s.judge().total()));
+    for (std::size_t n = 0; n < s.members().size(); ++n)
+        if (s.application().checked(n).wrong != 0) spdlog::error("{}: {}", title(s.members()[n].entry), s.application().checked(n).first_wrong);
+    for (const segment::Violated& v : s.judge().violations().first(std::min<std::size_t>(s.judge().violations().size(), 10)))
+        spdlog::warn("{}: {} by station {}", time_text(v.at), segment::name(v.rule), v.sender == segment::kNobody ? std::string{"nobody"} : std::to_string(v.sender));
+}
+
+void report_json(const Simulation& s, double seconds) {
+    const master::Master& m = s.master();
+    nlohmann::ordered_json j;
+    j["ok"] = s.good();
+    j["baud"] = fdl::baud(m.config().baud).bits_per_s;
+    j["line_ns"] = core::to_ns(s.now());
+    j["wall_s"] = seconds;
+    j["reached_ns"] = s.reached() ? nlohmann::ordered_json(core::to_ns(*s.reached())) : nlohmann::ordered_json(nullptr);
+    j["cycles"] = m.cycle().cycles;
+    if (m.cycle().cycles != 0) j["cycle_ticks"] = {{"min", m.cycle().min.n}, {"max", m.cycle().max.n}, {"per_tbit", fdl::baud(m.config().baud).bit.n}};
+    j["requests"] = m.counters().requests;
+    j["retries"] = m.counters().retries;
+    j["faults"] = s.faults();
+    j["violations"] = s.judge().total();
+    for (std::size_t n = 0; n < s.members().size(); ++n) {
+        const Application::Checked& c = s.application().checked(n);
+        nlohmann::ordered_json e;
+        e["address"] = m.slave(n).config().address;
+        e["name"] = m.slave(n).config().name;
+        e["state"] = state(s.members()[n]);
+        e["data_exchange"] = m.slave(n).exchanging();
+        e["exchanges"] = exchanges(s.members()[n]);
+        e["compared"] = c.compared;
+        e["wrong"] = c.wrong;
+        e["retries"] = m.slave(n).counters().retries;
+        e["lost"] = m.slave(n).counters().lost;
+        j["slaves"].push_back(std::move(e));
+    }
+    std::printf("%s\n", j.dump(2).c_str());
+}
+
+ExitCode run(const Arguments& a) {
+    LineConfig config = read_line_config(a.file);
+    if (!a.baud.empty()) config.baud = parse_baud(a.baud);
+    if (!a.baud.empty() && !config.baud) throw Failure{ExitCode::usage, "--baud " + a.baud + ": none of the ten rates"};
+    if (!a.trace.empty()) {
+        config.trace = a.trace;
+        config.link_type = static_cast<trace::LinkType>(a.link_type);
+    }
+    for (SlaveEntry& s : config.slaves)
+        for (const std::string& option : a.options) set_option(s.options, option, {});
+    std::optional<Ticks> duration = config.duration;
+    std::optional<std::uint64_t> cycles = config.cycles;
+    if (!a.duration.empty()) {
+        duration = parse_duration(a.duration);
+        cycles.reset();
+        if (!duration) throw Failure{ExitCode::usage, "--for " + a.duration + ": write 2ms, 250us or 1.5s"};
+    }
+    if (a.cycles != 0) {
+        cycles = a.cycles;
+        duration.reset();
+    }
+    Simulation simulation{config};
+    const auto begin = std::chrono::steady_clock::now();
+    simulation.run(duration, cycles);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (a.json) report_json(simulation, seconds);
+    else report_text(simulation, seconds);
+    for (std::size_t n = 0; n < simulation.members().size(); ++n)
+        if (simulation.members()[n].plugged && !simulation.master().slave(n).exchanging())
+            spdlog::error("{}: not in data exchange: {}", title(simulation.members()[n].entry), master::name(simulation.master().slave(n).state()));
+    return simulation.good() ? ExitCode::ok : ExitCode::failed;
+}
+
+}  // namespace
+
+void add_sim(CLI::App& app, Job& job) {
+    CLI::App* const c = app.add_subcommand("sim", "a master and slaves in virtual time, from a scenario");
+    const auto a = std::make_shared<Arguments>();
+    c->add_option("file", a->file, "the scenario; - reads stdin")->type_name("SCENARIO.toml")->required();
+    c->add_option("--cycles", a->cycles, "end after so many cycles with all slaves in data exchange")->type_name("N");
+    c->add_option("--for", a->duration, "end after so much line time: 10ms, 2s")->type_name("TIME");
+    c->add_option("--baud", a->baud, "another rate than the scenario's")->type_name("RATE");
+    c->add_option("--option", a->options, "an option of the model, for all slaves")->type_name("NAME=VALUE")->expected(1)->take_all();
+    c->add_option("--trace", a->trace, "record everything on the line")->type_name("FILE.pcapng");
+    c->add_option("--link-type", a->link_type, "link type of the trace")->check(CLI::IsMember({147, 257}));
+    c->add_flag("--json", a->json, "the report as JSON");
+    c->footer(footer("  dpchip sim examples/scenario.toml --trace scenario.pcapng\n"
+                     "Line time is virtual and exact; the file decides what happens when (docs/config.md).\n"
+                     "Exit code 1: a slave not in data exchange at the end, wrong inputs, or rules of the bus broken without injected fault."));
+    c->callback([a, &job] { job = [a] { return run(*a); }; });
+}
+
+}  // namespace dpchip::cli

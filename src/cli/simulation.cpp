@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// The course of a scenario.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <dpchip/cli/log.hpp>
+#include <dpchip/cli/simulation.hpp>
+
+namespace dpchip::cli {
+namespace {
+
+constexpr std::uint32_t kWatchdogMs = 100;
+constexpr Ticks kLongest = core::seconds(3600);
+
+master::MasterConfig master_config_of(const LineConfig& config) {
+    if (config.masters.size() > 1) refuse(config.masters[1].at, "one [[master]] is possible: the master does not share the bus with others");
+    MasterEntry entry;
+    if (!config.masters.empty()) entry = config.masters[0];
+    master::MasterConfig m;
+    m.address = entry.address;
+    m.baud = config.baud.value_or(fdl::BaudCode::mbit_12);
+    m.max_retry = entry.max_retry;
+    m.gap_factor = entry.gap_factor;
+    m.min_cycle = entry.min_cycle;
+    m.mode = entry.mode;
+    if (config.slot_time) m.slot_time = config.slot_time->at(m.baud);
+    return m;
+}
+
+std::vector<Application::Wish> wishes(const LineConfig& config) {
+    std::vector<Application::Wish> all;
+    for (const SlaveEntry& s : config.slaves) {
+        Application::Wish w;
+        w.io = slave::IoBehaviour{s.io.value_or("echo")};
+        all.push_back(std::move(w));
+    }
+    return all;
+}
+
+}  // namespace
+
+segment::Fault Simulation::Faults::operator()(const fdl::Transmission&, segment::StationIndex sender, std::uint64_t) {
+    for (Armed& a : armed) {
+        if (a.left == 0 || (a.sender != segment::kNobody && a.sender != sender)) continue;
+        --a.left;
+        ++*count;
+        return a.fault;
+    }
+    return {};
+}
+
+Simulation::Simulation(const LineConfig& config) : config_{config} {
+    if (config_.slaves.empty()) refuse({config_.file, 0, 0}, "a scenario needs at least one [[slave]]");
+    if (config_.baud_auto) refuse({config_.file, 0, 0}, "baud = \"auto\" is for live lines");
+    const master::MasterConfig m = master_config_of(config_);
+    check_addresses(config_, m.address);
+    master_ = std::make_unique<master::Master>(m);
+    application_ = std::make_unique<Application>(wishes(config_));
+    master_->on_cycle(*application_);
+    master_index_ = *segment_.attach(*master_, "master");
+    for (const SlaveEntry& entry : config_.slaves) {
+        if (entry.address == 126) refuse(entry.at, "a slave with address 126 has to get another one first");
+        const gsd::Gsd& gsd = shelf_.get(entry.gsd, entry.at);
+        if (const auto added = master_->add(master_config(gsd, entry, kWatchdogMs)); !added)
+            refuse(entry.at, title(entry) + ": " + master::name(added.error()));
+        Member member{entry, make_slave(gsd, entry), {}, true, false, 0};
+        members_.push_back(std::move(member));
+        attach(members_.back());
+    }
+    segment_.observe(judge_);
+    segment_.set_faults(segment::FaultRef{fault_source_});
+    if (config_.trace) trace_ = std::make_unique<TraceFile>(*config_.trace, segment_, live::Recorder::Options{"simulated line", config_.link_type, 0, master_index_});
+}
+
+void Simulation::attach(Member& m) {
+    const auto attached = segment_.attach(*m.slave, m.slave->name());
+    if (!attached) refuse(m.entry.at, title(m.entry) + ": " + segment::name(attached.error()));
+    m.index = *attached;
+    m.plugged = true;
+}
+
+void Simulation::detach(Member& m) {
+    if (m.plugged) segment_.detach(m.index);
+    m.plugged = false;
+}
+
+void Simulation::power_on(Member& m, const EventEntry& event) {
+    if (m.on) refuse(event.at, title(m.entry) + " has power already");
+    m.slave = make_slave(shelf_.get(m.entry.gsd, m.entry.at), m.entry, segment_.now());
+    m.on = true;
+    attach(m);
+}
+
+void Simulation::arm(const EventEntry& e) {
+    segment::StationIndex sender = segment::kNobody;
+    if (e.sender == kMasterSends) sender = master_index_;
+    else if (e.sender) {
+        if (!members_[*e.sender].plugged) refuse(e.at, title(members_[*e.sender].entry) + " is not on the line");
+        sender = members_[*e.sender].index;
+    }
+    fault_source_.armed.push_back({e.fault, e.count, sender});
+}
+
+void Simulation::happen(const EventEntry& e) {
+    spdlog::info("{}: {}", time_text(e.when), name(e.kind));
+    segment_.settle();
+    Member& m = members_[e.slave];
+    switch (e.kind) {
+    case EventKind::power_off:
+        if (!m.on) refuse(e.at, title(m.entry) + " has no power already");
+        m.exchanges += m.slave->counters().exchanges;
+        detach(m);
+        m.slave.reset();
+        m.on = false;
+        return;
+    case EventKind::power_on: return power_on(m, e);
+    case EventKind::unplug:
+        if (!m.plugged) refuse(e.at, title(m.entry) + " is not on the line");
+        return detach(m);
+    case EventKind::plug:
+        if (!m.on || m.plugged) refuse(e.at, title(m.entry) + (m.on ? " is on the line already" : " has no power"));
+        return attach(m);
+    case EventKind::diagnosis: {
+        if (!m.on) refuse(e.at, title(m.entry) + " has no power");
+        const driver::DiagFlags flags{e.ext_diag, e.stat_diag, false};
+        if (m.slave->set_diagnosis(e.octets, flags) == driver::DiagResult::too_long)
+            refuse(e.at, fmt::format("{} has room for {} octets of diagnosis with the header", title(m.entry), m.slave->plan().driver.max_diag));
+        if (m.plugged) segment_.touch(m.index);
+        return;
+    }
+    case EventKind::global_control: {
+        if (!master_->global_control({e.command, e.groups})) refuse(e.at, "too many Global_Control at one time");
+        modes_ |= e.command & (dp::kGcSync | dp::kGcFreeze | dp::kGcClearData);
+        if (e.command == 0) modes_ &= static_cast<std::uint8_t>(~dp::kGcClearData);
+        if ((e.command & dp::kGcUnsync) != 0) modes_ &= static_cast<std::uint8_t>(~dp::kGcSync);
+        if ((e.command & dp::kGcUnfreeze) != 0) modes_ &= static_cast<std::uint8_t>(~dp::kGcFreeze);
+        application_->disturb(modes_ != 0);
+        return;
+    }
+    case EventKind::fault: return arm(e);
+    case EventKind::mode:
+        master_->set_mode(e.mode);
+        segment_.touch(master_index_);
+        return;
+    case EventKind::io: {
+        if (!m.on) refuse(e.at, title(m.entry) + " has no power");
+        const slave::IoBehaviour io{e.io};
+        m.slave->set_io(io);
+        application_->expect(e.slave, io);
+        m.entry.io = e.io;
+        return;
+    }
+    }
+}
+
+void Simulation::advance_to(Ticks end, std::optional<std::uint64_t> cycles) {
+    const auto look = [&] {
+        if (!reached_ && master_->all_exchanging()) {
+            reached_ = segment_.now();
+            master_->clear_statistics();  // the summary is about data exchange, not about the way to it
+        }
+        return cycles && reached_ && master_->cycle().cycles >= *cycles;
+    };
+    segment_.run_until(look, end - segment_.now());
+}
+
+void Simulation::run(std::optional<Ticks> duration, std::optional<std::uint64_t> cycles) {
+    if (!duration && !cycles) cycles = 100;
+    const Ticks end = duration.value_or(kLongest);
+    for (const EventEntry& event : config_.events) {
+        if (event.when > end) refuse(event.at, "this event is later than the end of the scenario");
+        advance_to(event.when, {});
+        happen(event);
+    }
+    advance_to(end, duration ? std::optional<std::uint64_t>{} : cycles);
+    segment_.settle();
+}
+
+bool Simulation::good() const {
+    for (std::size_t i = 0; i < members_.size(); ++i)
+        if (members_[i].plugged && !master_->slave(i).exchanging()) return false;
+    return reached_ && application_->wrong() == 0 && (judge_.clean() || faults_ != 0);
+}
+
+}  // namespace dpchip::cli

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Building stations, and errors of the layers below as refusals that name the entry.
+#include <dpchip/cli/builtin_gsd.hpp>
+#include <dpchip/cli/input.hpp>
+#include <dpchip/cli/stations.hpp>
+#include <dpchip/gsd/parse.hpp>
+#include <dpchip/master/from_gsd.hpp>
+#include <dpchip/slave/error.hpp>
+
+namespace dpchip::cli {
+namespace {
+
+gsd::Gsd insist(gsd::Parsed parsed) {
+    if (!parsed.ok()) throw gsd::GsdError{parsed.gsd.file, std::move(parsed.diagnostics)};
+    return std::move(parsed.gsd);
+}
+
+gsd::Gsd load(const std::string& path) {
+    if (path == "-") return insist(gsd::parse(read_all(path), path));
+    if (!path.starts_with("builtin:")) return gsd::load(path);
+    const std::string_view text = builtin_gsd(path);
+    if (text.empty()) throw gsd::GsdError{path + ": there is only " + std::string{kBuiltinRemoteIo} + " inside the program"};
+    return insist(gsd::parse(text, path));
+}
+
+}  // namespace
+
+const gsd::Gsd& GsdShelf::get(const std::string& path, const Place& at) {
+    auto& file = files_[path];
+    if (file != nullptr) return *file;
+    try {
+        file = std::make_unique<gsd::Gsd>(load(path));
+    } catch (const gsd::GsdError& e) {
+        const std::string from = at.file.empty() ? std::string{} : "\n" + to_string(at) + ": note: wanted here";
+        throw Failure{ExitCode::input, e.what() + from};
+    }
+    return *file;
+}
+
+gsd::Configuration configure(const gsd::Gsd& gsd, const SlaveEntry& entry) {
+    try {
+        return gsd::configure(gsd, entry.modules);
+    } catch (const gsd::GsdError& e) {
+        refuse(entry.at, e.what());
+    }
+}
+
+std::unique_ptr<slave::VirtualSlave> make_slave(const gsd::Gsd& gsd, const SlaveEntry& entry, Ticks at,
+                                                const slave::StoredAddress* stored) {
+    slave::SlaveSetup setup;
+    setup.name = entry.name;
+    setup.modules = entry.modules;
+    setup.address = static_cast<std::uint8_t>(entry.address.value_or(126));
+    setup.no_add_change = entry.no_add_change;
+    if (stored != nullptr) {
+        setup.address = stored->address;
+        setup.no_add_change = stored->no_add_change;
+    }
+    setup.variant = entry.chip;
+    setup.options = entry.options;
+    setup.io = entry.io.value_or("echo");
+    setup.min_tsdr = entry.min_tsdr;
+    if (entry.follow_master) setup.cfg_policy = driver::CfgPolicy::follow_master;
+    setup.clock = core::Clock{entry.crystal_ppb, at};
+    setup.firmware_delay = entry.firmware_delay;
+    setup.user_watchdog = entry.user_watchdog;
+    try {
+        return std::make_unique<slave::VirtualSlave>(gsd, setup);
+    } catch (const gsd::GsdError& e) {
+        refuse(entry.at, e.what());
+    } catch (const slave::SlaveError& e) {
+        refuse(entry.at, gsd.model_name + ": " + e.what());
+    }
+}
+
+master::SlaveConfig master_config(const gsd::Gsd& gsd, const SlaveEntry& entry, std::uint32_t watchdog_ms) {
+    const gsd::Configuration configuration = configure(gsd, entry);
+    try {
+        master::SlaveConfig c = master::slave_config(gsd, configuration, static_cast<std::uint8_t>(entry.address.value_or(126)), entry.parameters);
+        if (!entry.name.empty()) c.name = entry.name;
+        c.watchdog_ms = entry.watchdog_ms.value_or(watchdog_ms);
+        c.group = entry.group;
+        c.sync = entry.sync;
+        c.freeze = entry.freeze;
+        if (entry.min_tsdr) c.min_tsdr = *entry.min_tsdr;
+        return c;
+    } catch (const gsd::GsdError& e) {
+        refuse(entry.at, e.what());
+    }
+}
+
+const char* name(chip::DpState state) {
+    switch (state) {
+    case chip::DpState::wait_prm: return "WAIT-PRM";
+    case chip::DpState::wait_cfg: return "WAIT-CFG";
+    case chip::DpState::data_exch: return "DATA-EXCH";
+    }
+    return "?";
+}
+
+const char* name(chip::WdState state) {
+    switch (state) {
+    case chip::WdState::baud_search: return "BAUD_SEARCH";
+    case chip::WdState::baud_control: return "BAUD_CONTROL";
+    case chip::WdState::dp_control: return "DP_CONTROL";
+    }
+    return "?";
+}
+
+std::string rate_text(const slave::VirtualSlave& slave) {
+    const auto rate = slave.baud();
+    return rate && *rate != fdl::BaudCode::not_found ? std::string{fdl::baud(*rate).name} : std::string{"searching"};
+}
+
+}  // namespace dpchip::cli
