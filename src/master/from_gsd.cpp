@@ -19,4 +19,20 @@ SlaveConfig slave_config(const gsd::Gsd& gsd, const gsd::Configuration& configur
     return slave;
 }
 
+void enable_dpv1(SlaveConfig& slave, const gsd::DpV1& dpv1, bool fail_safe, std::uint8_t alarms, std::uint8_t alarm_mode) {
+    if (slave.user_prm.size() < 3) slave.user_prm.resize(3);
+    unsigned supported = 0;
+    if (dpv1.pull_plug_alarm) supported |= dp::kEnablePullPlugAlarm;
+    if (dpv1.process_alarm) supported |= dp::kEnableProcessAlarm;
+    if (dpv1.diagnostic_alarm) supported |= dp::kEnableDiagnosticAlarm;
+    if (dpv1.manufacturer_specific_alarm) supported |= dp::kEnableManufacturerSpecificAlarm;
+    if (dpv1.status_alarm) supported |= dp::kEnableStatusAlarm;
+    if (dpv1.update_alarm) supported |= dp::kEnableUpdateAlarm;
+    const auto with = [](std::uint8_t octet, unsigned bits) { return static_cast<std::uint8_t>(octet | bits); };
+    slave.user_prm[0] = with(slave.user_prm[0], dp::kDpv1Enable | (fail_safe ? unsigned{dp::kFailSafe} : 0u));
+    slave.user_prm[1] = with(slave.user_prm[1], alarms & supported);
+    slave.user_prm[2] = static_cast<std::uint8_t>((slave.user_prm[2] & ~unsigned{dp::kAlarmModeMask}) | (alarm_mode & dp::kAlarmModeMask));
+    slave.fail_safe = slave.fail_safe || fail_safe;
+}
+
 }  // namespace dpchip::master

@@ -16,4 +16,9 @@ namespace dpchip::master {
 SlaveConfig slave_config(const gsd::Gsd& gsd, const gsd::Configuration& configuration, std::uint8_t address,
                          std::span<const gsd::PrmSetting> settings = {});
 
+/// Sets DPV1_Enable in the slave's parameters, with Fail_Safe where the GSD says so: MS1 needs it. `alarms`: bits of
+/// DPV1_Status_2, of which those that the GSD supports are set. `alarm_mode`: 0 one alarm of each type at a time, 1..7
+/// see dp::alarm_limit().
+void enable_dpv1(SlaveConfig& slave, const gsd::DpV1& dpv1, bool fail_safe, std::uint8_t alarms = 0, std::uint8_t alarm_mode = 0);
+
 }  // namespace dpchip::master

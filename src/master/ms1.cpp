@@ -15,7 +15,8 @@ bool Ms1::acknowledge(const dp::AlarmAck& alarm) {
 }
 
 void Ms1::start(Ticks now) {
-    acknowledging_ = !acks_.empty();
+    acknowledging_ = !acks_.empty() && !(wanted_ && service_next_);
+    service_next_ = acknowledging_;
     if (acknowledging_) {
         ack_ = acks_.pop();
         static_cast<void>(dp::encode(ack_, ack_pdu_));
@@ -42,7 +43,7 @@ Job* Ms1::next_job(Ticks now) {
 
 void Ms1::job_done(Ticks now) {
     switch (job_.outcome) {
-    case Job::Outcome::data: return data(now);
+    case Job::Outcome::data: return take_data(now);
     case Job::Outcome::acknowledged:
     case Job::Outcome::refused: return answered_without_data(now);
     case Job::Outcome::idle:
@@ -66,7 +67,7 @@ void Ms1::answered_without_data(Ticks now) {
     else if (state_ == State::draining) state_ = State::request;
 }
 
-void Ms1::data(Ticks now) {
+void Ms1::take_data(Ticks now) {
     if (state_ == State::draining) {
         ++counters_.stale;
         state_ = State::request;

@@ -24,7 +24,7 @@ class Ms1 : public Relation {
 public:
     explicit Ms1(const Ms1Config& config) : Relation{config.address}, config_{config} {}
 
-    /// Sends Alarm_Ack before the next service. False when 32 are waiting.
+    /// Sends Alarm_Ack, taking turns with services. False when 32 are waiting.
     bool acknowledge(const dp::AlarmAck& alarm);
     std::size_t acknowledgements_waiting() const { return acks_.size() + (acknowledging_ ? 1u : 0u); }
     /// Of the last Alarm_Ack.
@@ -46,7 +46,7 @@ private:
     void begun() override { wanted_ = true; }
     void start(Ticks now);
     void answered_without_data(Ticks now);
-    void data(Ticks now);
+    void take_data(Ticks now);
     void end(const ServiceResult& result);
     std::uint8_t sap() const { return acknowledging_ && config_.alarm_sap ? dp::kSapAlarm : dp::kSapMs1; }
 
@@ -54,6 +54,7 @@ private:
     State state_ = State::idle;
     bool wanted_ = false;         ///< a service waits for its turn, its PDU is in request_
     bool acknowledging_ = false;  ///< what is under way is an Alarm_Ack
+    bool service_next_ = false;   ///< an Alarm_Ack had its turn
     dp::AlarmAck ack_{};
     std::array<std::uint8_t, dp::kRecordHeader> ack_pdu_{};
     core::FixedQueue<dp::AlarmAck, 32> acks_;

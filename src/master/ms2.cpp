@@ -3,6 +3,7 @@
 #include <dpchip/master/ms2.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace dpchip::master {
 
@@ -96,8 +97,8 @@ Job* Ms2::next_job(Ticks now) {
     case Ms2State::connecting:
     case Ms2State::polling:
     case Ms2State::idle_polling: return on_sap({});
-    case Ms2State::requesting: return on_sap(request());
-    case Ms2State::idle_request: return on_sap(kIdlePdu);
+    case Ms2State::requesting: return on_sap(draining_ ? std::span<const std::uint8_t>{} : request());
+    case Ms2State::idle_request: return on_sap(draining_ ? std::span<const std::uint8_t>{} : kIdlePdu);
     case Ms2State::aborting: {
         std::array<std::uint8_t, dp::kAbortPdu> pdu{};
         static_cast<void>(dp::encode(abort_, pdu));
@@ -109,6 +110,7 @@ Job* Ms2::next_job(Ticks now) {
 
 void Ms2::enter(Ms2State state, Ticks now) {
     state_ = state;
+    draining_ = false;
     again_ = now;
     if (state == Ms2State::open) {
         last_sent_ = now;
@@ -148,7 +150,7 @@ void Ms2::shut(const ServiceResult& why) {
 void Ms2::job_done(Ticks now) {
     if (state_ == Ms2State::aborting) return shut(after_abort_);
     switch (job_.outcome) {
-    case Job::Outcome::data: return data(now);
+    case Job::Outcome::data: return take_data(now);
     case Job::Outcome::acknowledged: return acknowledged(now);
     case Job::Outcome::refused: return refused(now);
     case Job::Outcome::idle:
@@ -172,19 +174,23 @@ void Ms2::refused(Ticks now) {
         rm_poll_ = false;
         return put_off(now);
     }
-    // RR: the slave has not yet taken the octets of the last request out of the buffer.
-    if (response == fdl::Response::rr && (state_ == Ms2State::requesting || state_ == Ms2State::idle_request)) return put_off(now);
+    // RR: something waits to be fetched first, an Abort most likely.
+    if (response == fdl::Response::rr && !draining_ && (state_ == Ms2State::requesting || state_ == Ms2State::idle_request)) {
+        draining_ = true;
+        return put_off(now);
+    }
     shut(ServiceResult::not_taken(response));
 }
 
 void Ms2::acknowledged(Ticks now) {
+    if (std::exchange(draining_, false)) return put_off(now);
     if (state_ == Ms2State::initiating) rm_poll_ = true;
     else if (state_ == Ms2State::requesting) enter(Ms2State::polling, now);
     else if (state_ == Ms2State::idle_request) enter(Ms2State::idle_polling, now);
     again_ = now + config_.poll_interval;
 }
 
-void Ms2::data(Ticks now) {
+void Ms2::take_data(Ticks now) {
     const auto pdu = job_.data();
     if (state_ == Ms2State::initiating) return initiated(pdu, now);
     if (!pdu.empty() && pdu[0] == core::to_underlying(AcyclicFunction::abort)) {
@@ -192,6 +198,10 @@ void Ms2::data(Ticks now) {
         return shut(abort ? ServiceResult::by_abort(Kind::aborted, *abort) : ServiceResult::breaks(Kind::bad_answer, abort.error()));
     }
     if (state_ == Ms2State::connecting) return connected(pdu, now);
+    if (std::exchange(draining_, false)) {
+        ++counters_.stale;
+        return;
+    }
     if (state_ == Ms2State::idle_polling || state_ == Ms2State::idle_request) {
         if (!std::ranges::equal(pdu, kIdlePdu))
             return break_off(own(AbortReason::invalid_response), ServiceResult::breaks(Kind::bad_answer, dp::AcyclicError::function), now);

@@ -77,7 +77,7 @@ private:
     void put_off(Ticks now);
     void refused(Ticks now);
     void acknowledged(Ticks now);
-    void data(Ticks now);
+    void take_data(Ticks now);
     void initiated(std::span<const std::uint8_t> pdu, Ticks now);
     void connected(std::span<const std::uint8_t> pdu, Ticks now);
     void break_off(const dp::Abort& abort, const ServiceResult& why, Ticks now);
@@ -90,6 +90,7 @@ private:
     bool wanted_ = false;        ///< a service waits for its turn
     bool closing_ = false;       ///< the user wants to close
     bool rm_poll_ = false;       ///< SAP 49 took the Initiate.req without naming a SAP: ask for it
+    bool draining_ = false;      ///< the request was answered RR: fetch what is in the way
     dp::Abort abort_{};          ///< to be sent
     ServiceResult ending_{};
     ServiceResult after_abort_{};

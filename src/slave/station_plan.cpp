@@ -6,13 +6,17 @@
 #include <array>
 #include <limits>
 
+#include <dpchip/driver/acyclic_layout.hpp>
 #include <dpchip/driver/layout.hpp>
+#include <dpchip/dp/alarm.hpp>
 #include <dpchip/dp/set_prm.hpp>
 #include <dpchip/gsd/user_prm.hpp>
 #include <dpchip/slave/error.hpp>
 
 namespace dpchip::slave {
 namespace {
+
+constexpr std::uint8_t kDpv1StatusOctets = 3;
 
 bool is_signed(gsd::DataType t) {
     return t == gsd::DataType::signed8 || t == gsd::DataType::signed16 || t == gsd::DataType::signed32;
@@ -39,6 +43,41 @@ bool accepts_fail_safe(const gsd::Gsd& gsd, const OwnedPrmRules& prm) {
     return gsd.fail_safe_required || (status_1 & dp::kDpv1Enable) == 0 || (status_1 & dp::kFailSafe) != 0;
 }
 
+/// Alarm types of a GSD as bits of DPV1_Status_2.
+std::uint8_t alarm_bits(const gsd::DpV1& v1) {
+    unsigned bits = 0;
+    if (v1.diagnostic_alarm) bits |= dp::kEnableDiagnosticAlarm;
+    if (v1.process_alarm) bits |= dp::kEnableProcessAlarm;
+    if (v1.pull_plug_alarm) bits |= dp::kEnablePullPlugAlarm;
+    if (v1.status_alarm) bits |= dp::kEnableStatusAlarm;
+    if (v1.update_alarm) bits |= dp::kEnableUpdateAlarm;
+    if (v1.manufacturer_specific_alarm) bits |= dp::kEnableManufacturerSpecificAlarm;
+    return static_cast<std::uint8_t>(bits);
+}
+
+/// DP-V1 as the keywords say. Alarms are acknowledged over MS1, so that they open SAP 51 also for stations that keep no
+/// records there. Of the room in the diagnosis behind the six octets alarms get one half, at least the shortest one.
+driver::AcyclicConfig acyclic_config(const gsd::Gsd& gsd, const SlaveSetup& setup, std::uint8_t max_diag) {
+    const gsd::DpV1& v1 = gsd.dpv1;
+    driver::AcyclicConfig a{};
+    const unsigned room = max_diag - 6u;
+    a.alarms = room >= dp::kAlarmHeader ? alarm_bits(v1) : std::uint8_t{0};
+    a.ms1 = v1.c1_read_write || a.alarms != 0;
+    if (a.ms1) a.ms1_max_data = clamp_octets(v1.c1_read_write ? v1.c1_max_data_len : 0, 4, dp::kMaxRecord);
+    a.alarm_sap = a.ms1 && v1.extra_alarm_sap;
+    if (a.alarms != 0) {
+        a.max_alarm = clamp_octets(room / 2, dp::kAlarmHeader, dp::kMaxDeviceBlock);
+        a.alarm_sequence = v1.alarm_sequence_mode_count >= 2 ? clamp_octets(v1.alarm_sequence_mode_count, 2, 32) : std::uint8_t{0};
+    }
+    if (v1.c2_read_write) {
+        a.connections = setup.connections.value_or(clamp_octets(v1.c2_max_count_channels, 1, driver::kMaxConnections));
+        a.ms2_max_data = clamp_octets(v1.c2_max_data_len, 4, dp::kMaxRecord);
+        if (v1.max_initiate_pdu_length != 0) a.max_initiate = clamp_octets(v1.max_initiate_pdu_length, dp::kMinInitiateReq, dp::kMaxInitiatePdu);
+    }
+    a.identification = v1.ident_maintenance || setup.identification;
+    return a;
+}
+
 /// RAM sizes of a chip, the one after reset first.
 std::vector<driver::RamSize> ram_sizes(regmap::Variant variant) {
     const regmap::Traits& t = regmap::traits(variant);
@@ -46,6 +85,21 @@ std::vector<driver::RamSize> ram_sizes(regmap::Variant variant) {
     if (t.max_ram_bytes == driver::bytes(driver::RamSize::bytes_4096))
         return {driver::RamSize::bytes_2048, driver::RamSize::bytes_4096};
     return {driver::RamSize::bytes_2048};
+}
+
+/// Why the chip's RAM cannot hold it all; none when it can.
+driver::ConfigError fault_of(const driver::Config& c) {
+    const driver::Layout cyclic = driver::lay_out(c);
+    return cyclic.error != driver::ConfigError::none ? cyclic.error : driver::lay_out_acyclic(c, cyclic).error;
+}
+
+/// Class-2 connections are given up last of all, one after the other.
+bool fits_with_fewer_connections(driver::Config& c) {
+    while (c.dpv1.connections > 1) {
+        --c.dpv1.connections;
+        if (fault_of(c) == driver::ConfigError::none) return true;
+    }
+    return false;
 }
 
 /// Finds room: generous lengths in either RAM, then less, then only what the station needs.
@@ -57,9 +111,10 @@ void choose_lengths(driver::Config& c, const gsd::Configuration& configuration) 
             c.ram = ram;
             c.max_prm = clamp_octets(std::max<std::uint64_t>(needed_prm, room), 7, 244);
             c.max_cfg = clamp_octets(std::max<std::uint64_t>(configuration.cfg.size(), room), 0, 244);
-            error = driver::lay_out(c).error;
+            error = fault_of(c);
             if (error == driver::ConfigError::none) return;
         }
+    if (fits_with_fewer_connections(c)) return;
     const auto kind = error >= driver::ConfigError::dout_space ? SlaveError::Kind::ram : SlaveError::Kind::chip;
     throw SlaveError{kind, std::string{regmap::traits(c.variant).name} + ": " + driver::name(error) + " (" +
                                std::to_string(configuration.input_octets) + " octets of inputs, " +
@@ -75,7 +130,8 @@ OwnedPrmRules::OwnedPrmRules(const gsd::Gsd& gsd, const gsd::Configuration& conf
     for (std::size_t i = 0; i < data.octets.size(); ++i) {
         const auto fixed = static_cast<std::uint8_t>(~data.variable[i]);
         possible_.push_back(static_cast<std::uint8_t>(data.octets[i] | data.variable[i]));
-        if (fixed != 0) constants_.push_back({static_cast<std::uint8_t>(i), fixed, data.octets[i]});
+        const bool dpv1_status = gsd.dpv1.slave && !ext_prm && i < kDpv1StatusOctets;
+        if (fixed != 0 && !dpv1_status) constants_.push_back({static_cast<std::uint8_t>(i), fixed, data.octets[i]});
     }
     std::size_t count = 0;
     for (const gsd::PrmField& f : data.fields) count += gsd.parameters[f.parameter].allowed.size();
@@ -97,7 +153,8 @@ OwnedPrmRules::OwnedPrmRules(const gsd::Gsd& gsd, const gsd::Configuration& conf
         values_.push_back(v);
     }
     const auto octets = static_cast<std::uint8_t>(std::min<std::size_t>(data.octets.size(), 244));
-    rules_ = {octets, octets, constants_, values_};
+    const std::uint8_t most = gsd.dpv1.slave && !ext_prm ? std::max(octets, kDpv1StatusOctets) : octets;
+    rules_ = {octets, most, constants_, values_};
 }
 
 std::uint8_t OwnedPrmRules::possible_bits(std::size_t offset) const {
@@ -145,6 +202,10 @@ StationPlan::StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup) {
     }
     // Without outputs no DX_Out would tell of the exchange; the chips that can are told to say it all the same.
     if (configuration.output_octets == 0 && !t.access_violation) c.dx_int = driver::DxInt::always;
+    if (gsd.dpv1.slave && t.dpv1) {
+        c.dpv1 = acyclic_config(gsd, setup, c.max_diag);
+        if (c.dpv1.connections != 0) c.user_timer = driver::UserTimer::ms_10;  // for their timeouts
+    }
     choose_lengths(c, configuration);
 }
 

@@ -14,6 +14,8 @@
 #include <dpchip/gsd/gsd.hpp>
 #include <dpchip/regmap/options.hpp>
 #include <dpchip/regmap/variant.hpp>
+#include <dpchip/slave/identification.hpp>
+#include <dpchip/slave/record_table.hpp>
 
 namespace dpchip::slave {
 
@@ -31,12 +33,16 @@ struct SlaveSetup {
     core::Clock clock{};                                 ///< the crystal against line time
     core::Ticks firmware_delay{};                        ///< from X/INT to the interrupt routine
     std::uint16_t user_watchdog = 0;                     ///< R_User_WD_Value; 0: off
+    std::vector<Record> records{};                       ///< DP-V1
+    std::optional<Identification> identification{};      ///< I&M; else from the GSD, and only when that says so
+    std::optional<std::uint8_t> connections{};           ///< class-2; else as many as the GSD says and the RAM holds
 };
 
 /// User_Prm_Data rules with everything their views point to. Stays where it is.
 class OwnedPrmRules {
 public:
     OwnedPrmRules() = default;
+    /// The DPV1_Status octets of a DP-V1 slave are its master's to choose: constants of the GSD do not bind them.
     OwnedPrmRules(const gsd::Gsd& gsd, const gsd::Configuration& configuration, bool ext_prm);
     OwnedPrmRules(OwnedPrmRules&&) = default;
     OwnedPrmRules& operator=(OwnedPrmRules&&) = default;

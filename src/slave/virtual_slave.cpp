@@ -12,12 +12,14 @@ namespace dpchip::slave {
 VirtualSlave::VirtualSlave(const gsd::Gsd& gsd, const SlaveSetup& setup)
     : plan_{gsd, setup}, name_{setup.name.empty() ? gsd.model_name : setup.name}, io_{setup.io}, clock_{setup.clock},
       firmware_delay_{setup.firmware_delay}, line_now_{setup.clock.line(Ticks{0})},
-      drifts_{setup.clock.ppb() != 0 || setup.clock.line(Ticks{0}) != Ticks{0}}, chip_{setup.variant, setup.options},
+      drifts_{setup.clock.ppb() != 0 || setup.clock.line(Ticks{0}) != Ticks{0}}, records_{setup.records},
+      identification_{setup.identification ? *setup.identification : slave::identification(gsd)}, chip_{setup.variant, setup.options},
       driver_{Bus{&chip_}, firmware_} {
     firmware_.slave = this;
     if (io_.held().size() > plan_.configuration.input_octets)
         throw SlaveError{SlaveError::Kind::io_behaviour, "I/O behaviour '" + io_.text() + "': the station has " +
                                                              std::to_string(plan_.configuration.input_octets) + " octets of inputs"};
+    if (records_.error() != RecordTable::Error::none) throw SlaveError{SlaveError::Kind::records, slave::name(records_.error())};
     stored_ = {setup.address, setup.no_add_change};
     const driver::ConfigError error = driver_.configure(plan_.driver);
     if (error != driver::ConfigError::none) throw SlaveError{SlaveError::Kind::chip, driver::name(error)};

@@ -14,9 +14,11 @@
 
 #include <dpchip/chip/chip.hpp>
 #include <dpchip/core/clock.hpp>
-#include <dpchip/driver/vpc3.hpp>
+#include <dpchip/core/fixed_queue.hpp>
+#include <dpchip/driver/dpv1.hpp>
 #include <dpchip/fdl/transmission.hpp>
 #include <dpchip/gsd/gsd.hpp>
+#include <dpchip/slave/acyclic.hpp>
 #include <dpchip/slave/error.hpp>
 #include <dpchip/slave/io_behaviour.hpp>
 #include <dpchip/slave/station_plan.hpp>
@@ -78,6 +80,27 @@ public:
     void set_io(const IoBehaviour& io);
     /// As the driver's set_diagnosis().
     driver::DiagResult set_diagnosis(std::span<const std::uint8_t> ext_diag, driver::DiagFlags flags = {});
+    // ---- DP-V1, as far as the GSD says so -----------------------------------------------------------------------
+    /// An alarm or a status message for the master; `seq_nr` is given by the driver. What clears or updates an alarm is
+    /// another alarm: Specifier disappears, Alarm_Type update.
+    driver::AlarmRaised raise(const dp::AlarmStatus& alarm);
+    const RecordTable& records() const { return records_; }
+    RecordTable& records() { return records_; }
+    const Identification& identification() const { return identification_; }
+    /// Asked before the records; null: nobody. It must outlive the slave.
+    void set_handler(RecordHandler* handler) { handler_ = handler; }
+    /// For requests that the handler put off. False when nobody waits any more.
+    bool complete(const driver::Handle& handle, const driver::RecordAnswer& answer, std::span<const std::uint8_t> data = {});
+    bool complete(const driver::Handle& handle, const driver::InitiateAnswer& answer);
+    /// Ends the class-2 connection on this SAP with an Abort of instance user.
+    bool abort_connection(std::uint8_t sap, std::uint8_t reason);
+    const AcyclicCounters& acyclic_counters() const { return acyclic_counters_; }
+    /// Takes the oldest of up to 64 events; nothing when there is none. Newer ones than these 64 are lost until then.
+    std::optional<AcyclicEvent> take_event() {
+        if (events_.empty()) return std::nullopt;
+        return events_.pop();
+    }
+
     /// The user wants new parameters: to WAIT-PRM.
     void leave_master() { driver_.leave_master(); run_firmware_if_due(); }
     /// Go_Offline and Start again.
@@ -107,7 +130,7 @@ private:
         void write_block(std::uint16_t a, std::span<const std::uint8_t> in) { chip->write_block(a, in); }
     };
     /// The application on top of the driver.
-    struct Firmware : driver::Events {
+    struct Firmware : driver::AcyclicEvents {
         VirtualSlave* slave = nullptr;
         void prm_refused(driver::PrmFault) { ++slave->counters_.prm_refused; }
         driver::Verdict set_ext_prm(std::span<const std::uint8_t> octets);
@@ -119,6 +142,22 @@ private:
         void baud_rate_detect(std::uint8_t) { ++slave->counters_.baud_rates_found; }
         void new_gc_command(std::uint8_t) { ++slave->counters_.global_control; }
         void new_ssa_data(const dp::SetSlaveAdd& ssa);
+
+        driver::RecordAnswer noted(const driver::RecordAnswer& answer);
+        driver::RecordAnswer read(const driver::RecordCall& call, std::span<std::uint8_t> out);
+        driver::RecordAnswer write(const driver::RecordCall& call, std::span<const std::uint8_t> data);
+        driver::RecordAnswer data_transport(const driver::RecordCall& call, std::span<const std::uint8_t> data, std::span<std::uint8_t> out);
+        void request_dropped(driver::Handle handle);
+        void ms1_opened(std::uint8_t master);
+        void ms1_closed();
+        driver::InitiateAnswer initiate(const driver::InitiateCall& call);
+        void connection_opened(std::uint8_t sap, std::uint8_t master);
+        void connection_closed(std::uint8_t sap, driver::ClosedBy by, const dp::Abort& abort);
+        void alarm_acknowledged(const dp::AlarmAck& alarm);
+        void alarm_dropped(const dp::AlarmAck& alarm);
+        bool has_im(std::uint8_t slot, std::uint16_t im_index);
+        driver::RecordAnswer read_im(std::uint8_t slot, std::uint16_t im_index, std::span<std::uint8_t, dp::kImRecord> out);
+        driver::RecordAnswer write_im(std::uint8_t slot, std::uint16_t im_index, std::span<const std::uint8_t, dp::kImRecord> octets);
     };
 
     void step(Ticks local);
@@ -140,9 +179,14 @@ private:
     Counters counters_{};
     StoredAddress stored_{};
     std::array<std::uint8_t, 244> inputs_{}, outputs_{};
+    RecordTable records_;
+    Identification identification_;
+    RecordHandler* handler_ = nullptr;
+    AcyclicCounters acyclic_counters_{};
+    core::FixedQueue<AcyclicEvent, 64> events_;
     chip::Chip<> chip_;
     Firmware firmware_;
-    driver::Vpc3<Bus, Firmware> driver_;
+    driver::Vpc3<Bus, Firmware, 1, driver::Dpv1<driver::kMaxConnections, 16>> driver_;
 };
 
 }  // namespace dpchip::slave
