@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <sstream>
 #include <string>
 #include <string_view>
 
