@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The driver on a Cortex-M3, over a bus that is plain RAM: it is initialised, started, asked and answers.
+#include <dpchip/driver/dpv1.hpp>
 #include <dpchip/driver/vpc3.hpp>
 
 using namespace dpchip::driver;
@@ -13,6 +14,50 @@ struct App : Events {
 
 constexpr std::uint8_t kCfg[]{0x11, 0x21};
 constexpr PrmConstant kConstants[]{{0, 0xF0, 0x00}};
+
+struct AcyclicApp : AcyclicEvents {
+    RecordAnswer read(const RecordCall& call, std::span<std::uint8_t> out) {
+        if (call.slot != 1) return refused(dpchip::dp::ErrorCode1::invalid_slot);
+        out[0] = 0x55;
+        return answered(1);
+    }
+};
+
+/// An Initiate on SAP 49 and a DS_Read on the SAP that it was given, as the chip would leave them in RAM.
+static int with_dpv1() {
+    static AcyclicApp app;
+    static Vpc3<MemoryMappedBus, AcyclicApp, 1, Dpv1<2, 4>> drv{MemoryMappedBus{reinterpret_cast<std::uintptr_t>(ram)}, app};
+    for (std::uint8_t& octet : ram) octet = 0;
+    const Config config{.address = 8, .ident = 0x4711, .cfg = kCfg, .max_prm = 20, .max_diag = 32, .test_ram = false,
+                        .dpv1 = {.ms1 = true, .connections = 2, .ms2_max_data = 64, .alarms = 0xFC, .max_alarm = 8}};
+    if (drv.configure(config) != ConfigError::none || !drv.start()) return 5;
+    const AcyclicLayout& l = drv.dpv1().layout();
+    const auto buffer = [&](std::uint8_t ch) { return &ram[l.address(l.request_buffer(ch))]; };
+    constexpr std::uint8_t connection = channel::connection0, initiate[]{0x57, 0, 0, 0, 0, 100, 1, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 0, 0, 0};
+    std::uint8_t* at = buffer(channel::resource_manager);
+    for (std::uint8_t i = 0; i < sizeof initiate; ++i) at[4 + i] = initiate[i];
+    at[2] = sizeof initiate;
+    at[0] = 0xC0;
+    ram[l.entry(channel::resource_manager) + 1] = 0x82;
+    ram[l.entry(channel::resource_manager) + 2] = 0x32;
+    ram[0x01] = 0x80;  // FDL_Ind
+    drv.on_interrupt();
+    at = buffer(connection);
+    if (at[0] != 0xA0 || at[2] != 16 || at[4] != 0x57 || ram[l.entry(connection) + 1] != 0x82) return 6;
+    at[0] = 0x00;
+    ram[l.entry(connection)] |= 0x80;
+    ram[0x01] = 0x40;  // Poll_End_Ind
+    drv.on_interrupt();
+    at[4] = 0x5E, at[5] = 1, at[6] = 2, at[7] = 8, at[2] = 4;
+    at[0] = 0xC0;
+    ram[0x01] = 0x80;
+    drv.on_interrupt();
+    if (at[0] != 0xA0 || at[2] != 5 || at[8] != 0x55) return 7;
+    ram[0x01] = 0;
+    drv.tick(4000);  // the rate is not known: the longest Send_Timeout
+    if (at[2] != 3 || at[4] != 0x58 || at[6] != 0x13) return 8;
+    return 0;
+}
 
 int main() {
     App app;
@@ -29,5 +74,6 @@ int main() {
     ram[0x0C] = 0x01;  // diagnosis buffer 1 is the user's
     const std::uint8_t ext[]{2, 0x55};
     if (drv.set_diagnosis(ext, {.ext_diag = true}) != DiagResult::handed_over || ram[0x24] != 8) return 4;
-    return 0;
+    ram[0x0C] = ram[0x04] = 0;
+    return with_dpv1();
 }
