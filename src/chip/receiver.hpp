@@ -71,9 +71,8 @@ fdl::Reject check(const C& c, const fdl::Character& ch) {
     return fdl::Reject::need_more;
 }
 
-/// One character, at its end.
 template <class C>
-void character(C& c, const fdl::Character& ch) {
+void take_character(C& c, const fdl::Character& ch) {
     if (deaf(c.s)) return;
     if (idle::synchronised(c.s, ch.start)) to_hunt(c.s);
     const bool at_my_rate = ch.bit == idle::bit(c.s);
@@ -85,6 +84,13 @@ void character(C& c, const fdl::Character& ch) {
     c.s.rx_state = RxState::frame;
     c.s.character_due = ch.start + ch.bit * fdl::kCharacterBits;
     append(c, ch.octet);
+}
+
+/// One character, at its end. The receiver is busy only inside a telegram that may still become one.
+template <class C>
+void character(C& c, const fdl::Character& ch) {
+    take_character(c, ch);
+    c.s.rx_busy = c.s.rx_state == RxState::frame ? 1 : 0;
 }
 
 template <class C>
@@ -102,7 +108,10 @@ bool takes_whole(const C& c, const fdl::Transmission& t) {
 /// A transmission that has ended now.
 template <class C>
 void transmission(C& c, const fdl::Transmission& t) {
-    if (deaf(c.s)) return;
+    if (deaf(c.s)) {
+        c.s.rx_busy = 0;
+        return;
+    }
     if (!takes_whole(c, t)) return characters(c, t);
     std::memcpy(c.s.rx.data(), t.octets.data(), t.length);
     const auto telegram = fdl::decode({c.s.rx.data(), t.length});
