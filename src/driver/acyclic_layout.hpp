@@ -125,6 +125,9 @@ constexpr AcyclicLayout lay_out_acyclic(const Config& c, const Layout& cyclic) {
     if (l.error != ConfigError::none) return l;
     const AcyclicConfig& a = c.dpv1;
     l.shift = cyclic.shift;
+    l.list = cyclic.sap_list;
+    l.used_bytes = cyclic.used_bytes;
+    if (!a.any()) return l;  // an empty list has its place among the cyclic buffers
     l.connections = a.connections;
     l.ms1 = a.ms1;
     l.alarm = a.alarm_sap;

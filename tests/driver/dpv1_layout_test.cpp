@@ -171,6 +171,30 @@ TEST_F(Refusal, InterruptsAreAcknowledgedFirstAndTheControlOctetIsWrittenLast) {
     for (std::size_t i = 0; i < sizeof answer; ++i) EXPECT_EQ(chip.ram[buffer + i], answer[i]) << i;
 }
 
+TEST(AcyclicLayout, ADriverMadeForDpv1ServesAStationWithoutItOnAnyChip) {
+    for (const Variant variant : {Variant::vpc3a, Variant::vpc3c, Variant::apc3, Variant::spc3}) {
+        Config c = station();
+        c.variant = variant;
+        c.ram = variant == Variant::vpc3a || variant == Variant::vpc3c ? RamSize::bytes_2048 : RamSize::bytes_1536;
+        FakeChip chip;
+        App app;
+        Vpc3<FakeBus, App, 1, Dpv1<0, 1>> drv{FakeBus{&chip}, app};
+        ASSERT_EQ(drv.configure(c), ConfigError::none);
+        EXPECT_EQ(drv.dpv1().layout().used_bytes, drv.layout().used_bytes);
+        ASSERT_TRUE(drv.start());
+        EXPECT_EQ(chip.ram[chip.ram[org::sap_list_ptr] * 8u], 0xFF);
+        drv.tick(100000);
+        chip.request(irq::fdl_ind | irq::poll_end_ind);
+        drv.on_interrupt();
+        EXPECT_FALSE(drv.complete(Handle{48, 0}, answered()));
+        EXPECT_FALSE(drv.complete(Handle{51, 0}, answered()));
+        EXPECT_FALSE(drv.abort_connection(48, 0));
+        EXPECT_EQ(drv.raise({.type = 1}).result, AlarmResult::too_long);
+        c.dpv1.ms1 = true;
+        EXPECT_EQ(drv.configure(c), regmap::traits(variant).dpv1 ? ConfigError::none : ConfigError::not_in_this_chip);
+    }
+}
+
 TEST(AcyclicAddress, LockedSapsFollowASetSlaveAddress) {
     testing::Dpv1Bench t;
     Config c = t.dpv1_config();

@@ -235,6 +235,26 @@ TEST_P(Ms2, AnAnswerThatDoesNotComeInTimeIsReplacedByAnAbort) {
     EXPECT_EQ(t.poll(48, 50), Octets{kRs});
 }
 
+TEST_P(Ms2, AConnectionThatTheApplicationDoesNotDecideAboutIsAborted) {
+    t.app.initiate_later = true;
+    ASSERT_EQ(Dpv1Bench::pdu_of(t.acyclic(49, 50, Dpv1Bench::initiate_req(100))).size(), 4U);
+    t.wait_ms(1020);
+    EXPECT_EQ(t.app.news(), (News{"dropped 48", "closed 48 by driver 3"}));
+    EXPECT_EQ(t.poll(48, 50), (Octets{0x58, 0x00, 0x13}));
+    EXPECT_FALSE(t.drv.complete(t.app.handle, accept_connection()));
+}
+
+TEST_P(Ms2, AnAbortThatNobodyFetchesEndsWithTheSecondTimeout) {
+    ASSERT_EQ(t.open(100), 48);
+    EXPECT_TRUE(Dpv1Bench::pdu_of(t.acyclic(48, 50, {0x00})).empty());
+    t.wait_ms(980);
+    EXPECT_EQ(t.drv.dpv1().connection(0), detail::C2State::aborting);
+    t.wait_ms(30);
+    EXPECT_EQ(t.drv.dpv1().connection(0), detail::C2State::closed);
+    EXPECT_EQ(t.poll(48, 50), Octets{kRs});
+    EXPECT_EQ(t.app.news(), (News{"open 48 by 2", "closed 48 by driver 2"})) << "said once";
+}
+
 TEST_P(Ms2, AnAnswerThatNobodyFetchesIsReplacedByAnAbort) {
     ASSERT_EQ(t.open(100), 48);
     t.app.news();
