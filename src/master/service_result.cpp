@@ -46,7 +46,7 @@ const char* response_text(fdl::Response r) {
 }  // namespace
 
 std::string text(const dp::Abort& a) {
-    const auto instance_reason = static_cast<std::uint8_t>(core::to_underlying(a.instance) << 4 | (a.reason & 15u));
+    const auto instance_reason = static_cast<std::uint8_t>(unsigned{core::to_underlying(a.instance)} << 4 | (a.reason & 15u));
     const std::string reason = a.instance == dp::AbortInstance::msac_c2 ? dp::abort_reason_name(a.reason)
                                                                         : "reason " + std::to_string(a.reason);
     return reason + " of " + dp::name(a.instance) + " (" +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slave_Diag in words (reference 3.7, 5.5).
+#include <dpchip/dp/alarm.hpp>
 #include <dpchip/dp/diag.hpp>
 #include <dpchip/trace/service_text.hpp>
 #include <dpchip/trace/text.hpp>
@@ -11,8 +12,20 @@ std::string master_text(std::uint8_t master) {
     return master == dp::kNoMaster ? std::string{"no master"} : std::string{"master "} + std::to_string(master);
 }
 
+/// Alarm or status message of a DP-V1 slave. Nobody knows of a station without GSD what its block means: then only what
+/// is plausible is said, as a guess.
+std::string v1_text(const dp::DiagBlock& block, std::uint8_t station, const DeviceTexts* texts) {
+    const auto alarm = dp::alarm_status(block);
+    const std::optional<bool> v1 = texts != nullptr ? texts->dpv1_slave(station) : std::nullopt;
+    if (!alarm || v1 == false) return {};
+    if (v1) return alarm_text(*alarm);
+    const bool known = std::string_view{alarm->status ? dp::status_type_name(alarm->type) : dp::alarm_type_name(alarm->type)} != "reserved";
+    const bool reserved = alarm->status && (block.octets[3] & 0xFCu) != 0;
+    return known && !reserved && alarm->slot <= dp::kMaxAlarmSlot ? "with DP-V1 " + alarm_text(*alarm) : std::string{};
+}
+
 std::string device_text(const dp::DiagBlock& block, std::uint8_t station, const DeviceTexts* texts) {
-    std::string words;
+    std::string words = v1_text(block, station, texts);
     if (texts != nullptr)
         for (const std::string& text : texts->device_diag(station, block.data())) add_word(words, text);
     return words;

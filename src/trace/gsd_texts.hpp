@@ -18,6 +18,10 @@ public:
     }
     std::vector<std::string> device_diag(std::uint8_t station, std::span<const std::uint8_t> data) const override;
     std::string channel_error(std::uint8_t station, std::uint8_t error) const override;
+    std::optional<bool> dpv1_slave(std::uint8_t station) const override {
+        const gsd::Gsd* known = device(station);
+        return known != nullptr ? std::optional{known->dpv1.slave} : std::nullopt;
+    }
 
 private:
     const gsd::Gsd* device(std::uint8_t station) const { return station < devices_.size() ? devices_[station] : nullptr; }

@@ -158,14 +158,14 @@ DataText request_text(dp::Service service, Octets data) {
         blocks_text(data, text.details);
         return text;
     }
+    case dp::Service::ms1:
+    case dp::Service::ms1_alarm:
+    case dp::Service::resource_manager:
+    case dp::Service::ms2: return acyclic_text(dp::AcyclicDirection::request, data);
     case dp::Service::rd_input:
     case dp::Service::rd_output:
     case dp::Service::get_cfg:
     case dp::Service::slave_diag:
-    case dp::Service::ms1:
-    case dp::Service::ms1_alarm:
-    case dp::Service::resource_manager:
-    case dp::Service::ms2:
     case dp::Service::none: break;
     }
     return plain_text("data", data);
@@ -183,11 +183,11 @@ DataText answer_text(dp::Service service, Octets data, std::uint8_t station, con
     case dp::Service::global_control:
     case dp::Service::set_slave_add:
     case dp::Service::set_ext_prm:
+    case dp::Service::none: break;
     case dp::Service::ms1:
     case dp::Service::ms1_alarm:
     case dp::Service::resource_manager:
-    case dp::Service::ms2:
-    case dp::Service::none: break;
+    case dp::Service::ms2: return acyclic_text(dp::AcyclicDirection::answer, data);
     }
     return plain_text("data", data);
 }

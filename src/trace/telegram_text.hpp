@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Telegrams in words (reference 2, 3): one line for a list, more lines for who wants to know every octet.
-//
-// Services of DP-V0 are taken apart; of MS1 and MS2 (DP-V1) only the octets are shown.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +22,8 @@ public:
     virtual std::vector<std::string> device_diag(std::uint8_t station, std::span<const std::uint8_t> data) const = 0;
     /// Error 16..31 of a channel-related diagnosis.
     virtual std::string channel_error(std::uint8_t station, std::uint8_t error) const = 0;
+    /// Whether the station is a DP-V1 slave, whose device-related blocks are alarms and status messages. Nothing: unknown.
+    virtual std::optional<bool> dpv1_slave(std::uint8_t /*station*/) const { return std::nullopt; }
 };
 
 /// The request that an answer belongs to.

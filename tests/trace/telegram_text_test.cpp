@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Requests, OneTelegram, testing::Values(
     Spoken{octets("10 08 02 7D 87 16"), "SD1 2->8 SRD high FCB=1 Data_Exchange"},
     Spoken{telegram(0x88, 0x82, 0x7D, "3B 3E"), "SD2 2->8 SRD high FCB=1 Get_Cfg"},
     Spoken{telegram(0x88, 0x82, 0x7D, "34 3E 01"), "SD2 2->8 SRD high FCB=1 SAP 52 data 01"},
-    Spoken{telegram(0x88, 0x82, 0x7D, "33 33 5E 01 02 03"), "SD2 2->8 SRD high FCB=1 MS1 data 5E 01 02 03"},
+    Spoken{telegram(0x88, 0x82, 0x7D, "33 33 5E 01 02 03"), "SD2 2->8 SRD high FCB=1 MS1 DS_Read slot 1 index 2, up to 3 octets"},
     Spoken{telegram(0x88, 0x82, 0x7D, "3D"), "SD2 2->8 no room for the SAP octets that DA and SA announce: 3D"},
     Spoken{telegram(8, 2, 0x41, ""), "SD1 2->8 reserved function 1"},
     Spoken{octets("10 02 63 49 AF 16"), "rejected, wrong FCS: 10 02 63 49 AF 16"},
