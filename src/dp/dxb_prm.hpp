@@ -36,7 +36,8 @@ enum class DxbError : std::uint8_t {
     length,     ///< no whole number of links, none at all, or more than 29
     publisher,  ///< above 125
     published,  ///< Publisher_Length 0 or above 244
-    sample,     ///< the sample is empty or lies outside the published data
+    sample,     ///< the sample is empty, lies outside the published data, or is longer than the station takes
+    watchdog,   ///< links without WD_On are not monitored
     no_room,    ///< the buffer to encode into is too small
 };
 

@@ -45,30 +45,32 @@ public:
 
     /// Octets of RAM that the buffers take.
     static constexpr std::uint16_t room(const DxbConfig& c, std::uint8_t shift) {
-        const auto whole = [shift](std::size_t octets) { return ((octets + (1u << shift) - 1) >> shift) << shift; };
+        const std::size_t segment = std::size_t{1} << shift;
+        const auto whole = [segment](std::size_t octets) { return (octets + segment - 1) / segment * segment; };
+        const std::size_t sample = std::size_t{c.max_sample} + 2, links = std::size_t{c.max_links} * 4;
         if (c.max_links == 0) return 0;
-        return static_cast<std::uint16_t>(3 * whole(c.max_sample + 2u) + whole(c.max_links * 4u) + whole(dp::dxb_status_octets(c.max_links)));
+        return static_cast<std::uint16_t>(3 * whole(sample) + whole(links) + whole(dp::dxb_status_octets(c.max_links)));
     }
 
     /// Lays the buffers out from `first` on, below `end`. After Vpc3::configure(), before start(). False when the figures
     /// are out of range, or the RAM is too small.
     bool configure(const DxbConfig& config, const Layout& layout, std::uint16_t first, std::uint16_t end) {
         if (config.max_links > dp::kMaxDxbLinks || (config.max_links != 0 && (config.max_sample == 0 || config.max_sample > dp::kMaxPublished))) return false;
-        const std::uint16_t segment = static_cast<std::uint16_t>(1u << layout.shift);
-        std::uint16_t at = static_cast<std::uint16_t>((first + segment - 1u) & ~(segment - 1u));
+        const unsigned segment = 1u << layout.shift;
+        unsigned at = (first + segment - 1) & ~(segment - 1);
         if (at + room(config, layout.shift) > end) return false;
         config_ = config;
         shift_ = layout.shift;
         count_ = 0;
         if (config.max_links == 0) return true;
-        const auto take = [&](std::uint16_t octets) {
-            const std::uint16_t begin = at;
-            at = static_cast<std::uint16_t>((at + octets + segment - 1u) & ~(segment - 1u));
+        const auto take = [&](std::size_t octets) {
+            const auto begin = static_cast<std::uint16_t>(at);
+            at = (at + static_cast<unsigned>(octets) + segment - 1) & ~(segment - 1);
             return begin;
         };
-        for (std::uint16_t& buffer : out_) buffer = take(static_cast<std::uint16_t>(config.max_sample + 2u));
-        link_ = take(static_cast<std::uint16_t>(config.max_links * 4u));
-        status_ = take(static_cast<std::uint16_t>(dp::dxb_status_octets(config.max_links)));
+        for (std::uint16_t& buffer : out_) buffer = take(config.max_sample + 2u);
+        link_ = take(config.max_links * 4u);
+        status_ = take(dp::dxb_status_octets(config.max_links));
         write_cells();
         return true;
     }

@@ -44,6 +44,16 @@ struct Events {
     void user_timer_clock() {}
     /// Offline has been reached.
     void offline() {}
+
+    // What the application does beside the driver, with the parts of DP-V2 (dxb_subscriber.hpp, slave_clock.hpp,
+    // isochron.hpp). Left as they are, these cost nothing.
+    /// Interrupt bits that it serves and acknowledges by itself.
+    std::uint16_t own_interrupts() const { return 0; }
+    /// Some of them are pending.
+    void serve_own(std::uint16_t) {}
+    /// Bits of Mode Registers 0 and 2 that it needs.
+    std::uint16_t more_mode0() const { return 0; }
+    std::uint8_t more_mode2() const { return 0; }
 };
 
 template <class A>

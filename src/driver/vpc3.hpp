@@ -6,7 +6,7 @@
 // that the next poll() or on_interrupt() goes on with. Either of them may be used alone, or both: the functions for the
 // main program mask X/INT while they work. fetch_outputs() and write_inputs() belong to one context only.
 //
-// Not here: DXB, isochron mode, clock synchronisation.
+// DP-V2 stands beside it: dxb_subscriber.hpp, isochron.hpp, slave_clock.hpp, redundancy.hpp.
 #pragma once
 
 #include <array>

@@ -66,6 +66,7 @@ std::uint8_t Vpc3<Bus, App, N, D>::mode2() const {
     if (config_.dx_int == DxInt::always) v |= m::dx_int_mode;
     if (!config_.check_gc_reserved) v |= m::no_check_gc_reserved;
     if (config_.gc_int == GcInt::chip_default || config_.gc_int == GcInt::every) v |= m::gc_int_mode;
+    v |= app_->more_mode2();
     return static_cast<std::uint8_t>(v);
 }
 
@@ -86,6 +87,7 @@ std::uint16_t Vpc3<Bus, App, N, D>::mode0() const {
     if (c.spec_prm_buf_mode) v |= m0::spec_prm_buf_mode;
     if (c.fail_safe) v |= m0::spec_clear_mode;
     if (c.prm_cmd_supported) v |= m0::prm_cmd_supported;
+    v |= app_->more_mode0();
     return static_cast<std::uint16_t>(v);
 }
 
@@ -99,8 +101,10 @@ void Vpc3<Bus, App, N, D>::write_registers() {
     if (c.set_ext_prm) handled_ |= irq::new_ext_prm_data;
     if (c.user_timer != UserTimer::off) handled_ |= irq::user_timer_clock;
     if (kDpv1 && c.dpv1.any()) handled_ |= irq::poll_end_ind | irq::fdl_ind;
+    const unsigned own = app_->own_interrupts();
+    handled_ &= static_cast<std::uint16_t>(~own);
     imr_ = c.service == Service::polled ? std::uint16_t{0xFFFF}
-                                        : static_cast<std::uint16_t>(~(handled_ & ~unsigned{c.masked}));
+                                        : static_cast<std::uint16_t>(~((handled_ | own) & ~unsigned{c.masked}));
 
     write_word(ctl::int_req_reg_low, 0);
     write_word(ctl::int_ack_reg_low, 0xFFFF);

@@ -41,14 +41,16 @@ void Vpc3<Bus, App, N, D>::feed_user_watchdog() {
 /// Acknowledges first and looks afterwards: an event that comes in between is seen by the next call.
 template <BusPort Bus, class App, std::size_t N, class D>
 std::uint16_t Vpc3<Bus, App, N, D>::serve() {
-    const auto irr = static_cast<std::uint16_t>(read_word(ctl::int_req_reg_low) & handled_);
-    if (irr == 0) return 0;
+    const std::uint16_t pending = read_word(ctl::int_req_reg_low);
+    const auto irr = static_cast<std::uint16_t>(pending & handled_), own = static_cast<std::uint16_t>(pending & app_->own_interrupts());
+    if (own != 0) app_->serve_own(own);
+    if (irr == 0) return own;
     const std::uint16_t ack = static_cast<std::uint16_t>(irr & ~unsigned{regmap::interrupt::by_acknowledgement});
     if (core::high(ack) != 0) write(ctl::int_ack_reg_high, core::high(ack));
     if (core::low(ack) != 0) write(ctl::int_ack_reg_low, core::low(ack));
     serve_requests(irr);
     serve_indications(irr);
-    return irr;
+    return static_cast<std::uint16_t>(irr | own);
 }
 
 /// Prm before Cfg (6.2.3), then the ones that belong to data exchange.

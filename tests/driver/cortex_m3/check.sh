@@ -23,7 +23,7 @@ if [ -n "$bad" ]; then
     echo "$bad"
     exit 1
 fi
-arm-none-eabi-size "$out/driver.elf" | awk 'NR == 2 { printf "drivers with and without DP-V1 and their main on a Cortex-M3: %d octets of code and constants, %d of data\n", $1, $2 + $3 }'
+arm-none-eabi-size "$out/driver.elf" | awk 'NR == 2 { printf "drivers with and without DP-V1, the parts of DP-V2 and their main on a Cortex-M3: %d octets of code and constants, %d of data\n", $1, $2 + $3 }'
 timeout 60 qemu-system-arm -M lm3s6965evb -nographic -monitor none -serial none \
     -semihosting-config enable=on,target=native -kernel "$out/driver.elf" </dev/null 2>"$out/qemu.log" || {
     code=$?

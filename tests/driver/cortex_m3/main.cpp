@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The driver on a Cortex-M3, over a bus that is plain RAM: it is initialised, started, asked and answers.
 #include <dpchip/driver/dpv1.hpp>
+#include <dpchip/driver/dxb_subscriber.hpp>
+#include <dpchip/driver/isochron.hpp>
+#include <dpchip/driver/redundancy.hpp>
+#include <dpchip/driver/slave_clock.hpp>
 #include <dpchip/driver/vpc3.hpp>
 
 using namespace dpchip::driver;
@@ -59,7 +63,39 @@ static int with_dpv1() {
     return 0;
 }
 
+/// A link, its sample, a time: what the chip would leave in RAM, and what becomes of it.
+static int with_dpv2() {
+    static App app;
+    static Vpc3<MemoryMappedBus, App> drv{MemoryMappedBus{reinterpret_cast<std::uintptr_t>(ram)}, app};
+    const MemoryMappedBus bus{reinterpret_cast<std::uintptr_t>(ram)};
+    for (std::uint8_t& octet : ram) octet = 0;
+    if (drv.configure({.address = 8, .ident = 0x4711, .cfg = kCfg, .test_ram = false}) != ConfigError::none) return 9;
+    static DxbSubscriber<MemoryMappedBus> dxb{bus};
+    static SlaveClock<MemoryMappedBus> clock{bus};
+    if (!dxb.configure({29, 8}, drv.layout(), drv.layout().used_bytes, 2048 - 32) || !clock.configure(drv.layout(), BusMode::intel)) return 10;
+    constexpr std::uint8_t prm[]{9, 3, 0, 0, 1, 9, 4, 1, 2, 8, 2, 0, 0x28, 0x02, 0, 0, 0};
+    dpchip::dp::PrmBlockWalker walker{prm};
+    dpchip::dp::PrmBlock block;
+    if (!walker.next(block) || dxb.add(block, true) != dpchip::dp::DxbError::none || ram[0x35] != 4 || ram[drv.layout().address(ram[0x36])] != 9) return 11;
+    std::uint8_t* const n = &ram[drv.layout().address(ram[0x23])];
+    n[0] = 9, n[1] = 2, n[2] = 0x22, n[3] = 0x33;
+    ram[0x13] = 0x05;  // new, in DXBout_Buf 1
+    DxbSample sample;
+    if (dxb.serve(0x0080) != 0x0080 || !dxb.fetch(sample) || sample.publisher != 9 || sample.octets.size() != 2 || sample.octets[1] != 0x33) return 12;
+    RedundantHalf half;
+    walker.next(block);
+    if (half.command(*dpchip::dp::decode_prm_cmd(block)).seq_nr != 5 || half.role() != Role::primary) return 13;
+    clock.start({.interval = 100});
+    ram[0x7E0] = 0x01, ram[0x7E4] = 0xC3, ram[0x7EF] = 250;
+    if (clock.serve(1, [] { return std::uint64_t{1'000'000}; }) != ClockEvent::set || clock.now(2'000'000).seconds != 0xC3000000u) return 14;
+    SynchMeter meter;
+    meter.expect(1000, 10);
+    return meter.observe(0) && meter.observe(1005) && !meter.observe(2100) ? 0 : 15;
+}
+
 int main() {
+    if (const int code = with_dpv2(); code != 0) return code;
+    for (std::uint8_t& octet : ram) octet = 0;
     App app;
     Vpc3<MemoryMappedBus, App> drv{MemoryMappedBus{reinterpret_cast<std::uintptr_t>(ram)}, app};
     const Config config{.address = 8, .ident = 0x4711, .cfg = kCfg, .max_prm = 20, .max_diag = 20,
