@@ -100,7 +100,6 @@ void set_status(C& c, std::uint8_t value) {
 template <class C>
 void take_value(C& c) {
     const auto d = mac::data(c.s);
-    std::copy_n(d.begin(), kTimeOctets, c.s.last_time_event.begin());
     if (interrupt_pending(c.s)) return;
     for (std::size_t i = 0; i < kTimeOctets; ++i) {
         cell(c, static_cast<std::uint16_t>(time_event + i)) = d[i];
@@ -146,7 +145,11 @@ template <class C>
 void receive(C& c) {
     if (!enabled(c)) return;
     if (!mac::function_code(c.s).clock_value()) return dispatch(c, Event::time_event);
-    dispatch(c, good_value(c) ? Event::good_value : Event::bad_value);
+    const Event event = good_value(c) ? Event::good_value : Event::bad_value;
+    // Time_Last_Rcvd: also of a value that failed the check, or the check would never pass again after a lost sequence.
+    const auto d = mac::data(c.s);
+    if (c.s.cs_state == CsState::wait_cv && d.size() == kClockValueOctets) std::copy_n(d.begin(), kTimeOctets, c.s.last_time_event.begin());
+    dispatch(c, event);
 }
 
 /// Set_Prm and LEAVE-MASTER stop the time receiver unless it is told to ignore them.

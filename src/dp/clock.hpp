@@ -34,6 +34,11 @@ struct NetworkTime {
         NetworkTime t{seconds + us / 1'000'000, fraction};
         return t.plus({0, static_cast<std::uint32_t>(((us % 1'000'000) << 32) / 1'000'000)});
     }
+    /// Later by `ns` nanoseconds, rounded in the same way; for up to 292 years.
+    constexpr NetworkTime plus_ns(std::int64_t ns) const {
+        const auto n = static_cast<std::uint64_t>(ns);
+        return plus({n / 1'000'000'000, static_cast<std::uint32_t>(((n % 1'000'000'000) << 32) / 1'000'000'000)});
+    }
     constexpr NetworkTime plus(const NetworkTime& o) const {
         const std::uint64_t sum = std::uint64_t{fraction} + o.fraction;
         return {seconds + o.seconds + (sum >> 32), static_cast<std::uint32_t>(sum & 0xFFFFFFFFu)};

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <dpchip/core/ticks.hpp>
+#include <dpchip/dp/clock.hpp>
+#include <dpchip/dp/global_control.hpp>
 #include <dpchip/dp/set_prm.hpp>
 #include <dpchip/fdl/baud.hpp>
 #include <dpchip/fdl/bus_times.hpp>
@@ -40,10 +42,27 @@ struct SlaveConfig {
     bool freeze = false;                     ///< Freeze_Req
     bool fail_safe = false;                  ///< in Mode::clear it gets no outputs at all, instead of zeroes
     Ticks min_slave_interval{};              ///< least time between two polls
+    bool publisher = false;                  ///< polled with function code 7: its inputs go to everybody. Publisher_Enable
+                                             ///< and the minTSDR that it takes are set by Master::add()
 };
 
 /// The whole data unit of Set_Prm, Lock_Req set.
 std::vector<std::uint8_t> set_prm_data(const SlaveConfig& slave);
+
+/// Isochronous bus cycles (VPC3+C 7.3.2): SYNCH, cyclic part, acyclic part, token, and spare time until the next SYNCH.
+/// The SYNCHs come on a grid by the master's own crystal: how far that is off is the business of its tap on the line.
+struct IsochronCycle {
+    Ticks cycle{};                           ///< T_DP; 0: cycles follow each other as fast as they can
+    dp::GlobalControl synch{0x00, 0x80};     ///< what the slaves' compare registers hold
+    Ticks jitter{};                          ///< a SYNCH comes up to so much after its time, each anew
+    std::uint64_t seed = 1;                  ///< of the jitter
+};
+
+/// Clock synchronisation (7.3.3): Time_Event and Clock_Value in every `interval`.
+struct TimeMaster {
+    Ticks interval{};                        ///< Clock_Sync_Interval; 0: no time master
+    dp::NetworkTime start{};                 ///< the time at local time 0
+};
 
 struct MasterConfig {
     std::uint8_t address = 2;                ///< 0..125
@@ -56,6 +75,8 @@ struct MasterConfig {
     std::uint8_t absent_polls = 1;           ///< slaves known to be absent that are asked for in one cycle
     std::uint8_t acyclic_per_cycle = 1;      ///< requests of jobs and relations in one cycle, at least 1
     Ticks min_cycle{};                       ///< least time from token to token
+    IsochronCycle isochron{};
+    TimeMaster time{};
     Mode mode = Mode::operate;
 };
 

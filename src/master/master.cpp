@@ -31,6 +31,7 @@ Master::Master(const MasterConfig& config) : config_{config}, mode_{config.mode}
     bit_ = fdl::baud(config_.baud).bit;
     slot_ = config_.slot_time == Ticks{} ? bits(config_.times.tsl) : config_.slot_time;
     min_cycle_ = config_.min_cycle;
+    random_ = config_.isochron.seed | 1;
     by_address_.fill(-1);
     if (mode_ != Mode::offline) take_bus();
 }
@@ -40,7 +41,13 @@ core::Result<std::size_t, ConfigError> Master::add(const SlaveConfig& slave) {
     if (!good) return good.error();
     if (slave.address == config_.address || by_address_[slave.address] >= 0) return ConfigError::address_taken;
     by_address_[slave.address] = static_cast<std::int16_t>(slaves_.size());
-    slaves_.push_back(std::make_unique<SlaveHandler>(slave));
+    SlaveConfig own = slave;
+    if (own.publisher) {
+        own.user_prm.resize(std::max<std::size_t>(own.user_prm.size(), 3));
+        own.user_prm[0] |= dp::kPublisherEnable;
+        own.min_tsdr = static_cast<std::uint8_t>(std::clamp<std::int64_t>(config_.times.publisher_min_tsdr(), own.min_tsdr, 255));
+    }
+    slaves_.push_back(std::make_unique<SlaveHandler>(own));
     min_cycle_ = std::max(min_cycle_, slave.min_slave_interval);
     return slaves_.size() - 1;
 }
@@ -67,6 +74,21 @@ void Master::set_mode(Mode mode) {
     }
 }
 
+bool Master::take_over(const Master& primary) {
+    const auto same = [](const auto& a, const auto& b) { return a->config().address == b->config().address && a->config().ident == b->config().ident; };
+    if (mode_ != Mode::offline || primary.config_.address != config_.address) return false;
+    if (!std::ranges::equal(slaves_, primary.slaves_, same)) return false;
+    for (std::size_t n = 0; n < slaves_.size(); ++n) *slaves_[n] = *primary.slaves_[n];
+    frames_ = primary.frames_;
+    mode_ = primary.mode_;
+    announced_ = primary.announced_;
+    event_time_ = primary.event_time_;
+    previous_event_ = primary.previous_event_;
+    now_ = std::max(now_, primary.now_);
+    if (mode_ != Mode::offline) take_bus();
+    return true;
+}
+
 bool Master::global_control(const dp::GlobalControl& command) {
     if (commands_.size() == commands_.capacity()) return false;
     commands_.push(command);
@@ -91,12 +113,15 @@ void Master::advance(Ticks t) {
     now_ = t;
     if ((phase_ == Phase::asking || phase_ == Phase::hearing) && t >= deadline_) no_answer();
     if (phase_ == Phase::draining && t >= send_at_) {
-        const bool token = step_ == Step::token;
+        const bool token = step_ == Step::token || step_ == Step::pass;
         if (step_ == Step::job) job_finished(Job::Outcome::acknowledged);
         step_done(own_end_, token ? config_.times.tid1() : config_.times.tid2());
     }
     if (phase_ == Phase::waiting && t >= send_at_) {
-        if (step_ == Step::claim) begin_cycle();
+        if (step_ == Step::claim) {
+            synch_at_ = clock_due_ = now_;
+            begin_cycle();
+        }
         phase_ = Phase::ready;
     }
 }
@@ -113,7 +138,7 @@ void Master::take_bus() {
 }
 
 void Master::begin_cycle() {
-    step_ = Step::token;
+    step_ = isochron() ? Step::synch : Step::token;
     turn_ = 0;
     absent_left_ = std::min<std::size_t>(config_.absent_polls, slaves_.size());
     acyclic_left_ = config_.acyclic_per_cycle;
@@ -121,6 +146,25 @@ void Master::begin_cycle() {
     announced_ = mode_;
     if (mode_ == Mode::clear) global_control({dp::kGcClearData, 0});
     if (mode_ == Mode::operate) global_control({0, 0});
+}
+
+/// The next place on the grid of SYNCHs that is not too early, and the jitter on top.
+Ticks Master::synch_time(Ticks earliest) {
+    const IsochronCycle& i = config_.isochron;
+    synch_at_ += i.cycle;
+    for (; synch_at_ < earliest; synch_at_ += i.cycle) ++cycle_.overruns;
+    if (i.jitter == Ticks{}) return synch_at_;
+    random_ ^= random_ << 13;
+    random_ ^= random_ >> 7;
+    random_ ^= random_ << 17;
+    return synch_at_ + Ticks{static_cast<std::int64_t>(random_ % (static_cast<std::uint64_t>(i.jitter.n) + 1))};
+}
+
+/// An acyclic request, its longest answer and the token are over before the next SYNCH. Repetitions are not reckoned with.
+bool Master::fits_in_cycle() const {
+    if (!isochron()) return true;
+    const auto characters = static_cast<std::int64_t>(fdl::kMaxTelegram) + 64;
+    return present() + slot_ + bits(fdl::kCharacterBits * characters) + bits(2 * config_.times.tid2()) <= synch_at_ + config_.isochron.cycle;
 }
 
 /// The next part of the cycle that has something to do; the end of one cycle is the beginning of another.
@@ -139,8 +183,16 @@ void Master::choose() {
 bool Master::step_has_work() {
     switch (step_) {
     case Step::claim:
+    case Step::synch:
     case Step::token:
     case Step::end: return false;
+    case Step::pass: return isochron();
+    case Step::time_event:
+        if (config_.time.interval == Ticks{} || present() < clock_due_) return false;
+        clock_due_ += config_.time.interval;
+        clock_value_due_ = true;
+        return true;
+    case Step::clock_value: return clock_value_due_;
     case Step::slave:
         if (!active()) return false;
         while (turn_ < slaves_.size() && slaves_[turn_]->given_up()) ++turn_;
@@ -150,13 +202,13 @@ bool Master::step_has_work() {
         if (commands_.empty()) return false;
         command_ = commands_.pop();
         return true;
-    case Step::job: return acyclic_left_ != 0 && acyclic_due();
+    case Step::job: return acyclic_left_ != 0 && fits_in_cycle() && acyclic_due();
     case Step::scan:
-        if (!scanning()) return false;
+        if (!scanning() || !fits_in_cycle()) return false;
         job_ = &scan_job_;
         return true;
     case Step::gap:
-        if (config_.gap_factor == 0 || ++gap_count_ < config_.gap_factor) return false;
+        if (config_.gap_factor == 0 || !fits_in_cycle() || ++gap_count_ < config_.gap_factor) return false;
         gap_count_ = 0;
         gap_address_ = gap_address_ >= config_.hsa ? std::uint8_t{0} : static_cast<std::uint8_t>(gap_address_ + 1);
         return gap_address_ != config_.address && by_address_[gap_address_] < 0;
@@ -209,8 +261,12 @@ void Master::step_done(Ticks end, std::int64_t idle_bits) {
     case Step::absent: --absent_left_; break;
     case Step::command: break;
     case Step::job: --acyclic_left_; break;
+    case Step::clock_value: break;
+    case Step::synch: step_ = Step::slave; break;
     case Step::claim:
     case Step::token:
+    case Step::time_event:
+    case Step::pass:
     case Step::scan:
     case Step::gap:
     case Step::end: step_ = static_cast<Step>(static_cast<unsigned>(step_) + (step_ == Step::end ? 0u : 1u)); break;
@@ -223,6 +279,7 @@ void Master::step_done(Ticks end, std::int64_t idle_bits) {
     }
     send_at_ = std::max(end, own_end_) + bits(idle_bits);
     if (step_ == Step::token) send_at_ = std::max(send_at_, cycle_start_ + min_cycle_);
+    if (step_ == Step::synch) send_at_ = synch_time(send_at_);
 }
 
 /// A token begins now.

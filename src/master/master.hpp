@@ -29,7 +29,8 @@ namespace dpchip::master {
 
 struct CycleStatistics {
     std::uint64_t cycles = 0;
-    Ticks last{}, min = core::kNever, max{};  ///< from token to token
+    Ticks last{}, min = core::kNever, max{};  ///< from token to token; isochronous: from SYNCH to SYNCH
+    std::uint64_t overruns = 0;               ///< SYNCHs left out because a cycle took too long
 };
 
 struct MasterCounters {
@@ -73,6 +74,10 @@ public:
     /// From the next cycle on; clear and operate are announced with Global_Control. After offline the bus is taken
     /// as at power-up. Call Segment::touch() when coming from offline.
     void set_mode(Mode mode);
+    /// A backup master of the same address and slaves, offline until now, goes on where `primary` was: with its outputs,
+    /// its inputs and its frame count bits, so that the slaves notice nothing. `primary` must be off the line or offline.
+    /// False when address or slaves differ. Call Segment::touch() afterwards.
+    bool take_over(const Master& primary);
     /// Global_Control after the cyclic part of this cycle: Sync, Freeze and their kind. False when 8 are waiting.
     bool global_control(const dp::GlobalControl& command);
     /// Hands over a job; it stays the caller's and must live until finished() or cancel(). False when 16 are
@@ -101,11 +106,12 @@ public:
     void carrier(Ticks at);
     bool take(fdl::Transmission& t);
     bool hears_all() const { return mode_ != Mode::offline; }
-    std::uint8_t address() const { return config_.address; }
+    /// None while offline, so that a backup may hang on the same line.
+    std::uint8_t address() const { return mode_ == Mode::offline ? std::uint8_t{255} : config_.address; }
 
 private:
     /// The parts of a cycle, in order.
-    enum class Step : std::uint8_t { claim, token, slave, absent, command, job, scan, gap, end };
+    enum class Step : std::uint8_t { claim, synch, token, slave, absent, command, time_event, clock_value, job, scan, gap, pass, end };
     enum class Phase : std::uint8_t {
         silent,    ///< offline
         waiting,   ///< for send_at_
@@ -119,10 +125,14 @@ private:
 
     Ticks bits(std::int64_t n) const { return bit_ * n; }
     Ticks present() const { return std::max(now_, heard_); }
+    bool isochron() const { return config_.isochron.cycle != Ticks{}; }
     bool active() const { return mode_ == Mode::clear || mode_ == Mode::operate; }
 
     // the cycle
     void take_bus();
+    Ticks synch_time(Ticks earliest);
+    bool fits_in_cycle() const;
+    std::size_t compose_clock_value(std::span<std::uint8_t> out);
     void begin_cycle();
     void choose();
     bool step_has_work();
@@ -192,6 +202,12 @@ private:
     std::array<Found, 127> found_{};
     std::uint8_t gap_address_ = kLastAddress;
     std::uint8_t gap_count_ = 0;
+
+    Ticks synch_at_{};               ///< the SYNCH of this cycle, without jitter
+    std::uint64_t random_ = 1;
+    Ticks clock_due_{};              ///< the next Time_Event
+    bool clock_value_due_ = false;
+    dp::NetworkTime event_time_{}, previous_event_{};
 
     CycleHook hook_ = nullptr;
     void* hook_context_ = nullptr;

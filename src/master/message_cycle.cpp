@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <dpchip/dp/clock.hpp>
 #include <dpchip/dp/diag.hpp>
 #include <dpchip/master/master.hpp>
 
@@ -24,12 +25,16 @@ const char* name(Job::Outcome outcome) {
 
 bool Master::take(fdl::Transmission& t) {
     if (phase_ != Phase::ready) return false;
-    if (step_ == Step::token) measure();
+    if (step_ == (isochron() ? Step::synch : Step::token)) measure();
     t.start = now_;
     t.bit = bit_;
     t.damaged = t.synchronised = false;
     t.length = static_cast<std::uint16_t>(compose(t.buffer()));
     own_end_ = t.end();
+    if (step_ == Step::time_event) {
+        previous_event_ = event_time_;
+        event_time_ = config_.time.start.plus_ns(core::to_ns(own_end_));
+    }
     if (!wants_answer()) {
         phase_ = Phase::draining;
         send_at_ = own_end_;
@@ -47,12 +52,16 @@ std::size_t Master::compose(std::span<std::uint8_t> out) {
     switch (step_) {
     case Step::slave:
     case Step::absent: return slaves_[polled()]->compose(out, config_.address, mode_);
+    case Step::synch:
     case Step::command: {
-        const std::array<std::uint8_t, 2> data{command_.control_command, command_.group_select};
+        const dp::GlobalControl& gc = step_ == Step::synch ? config_.isochron.synch : command_;
+        const std::array<std::uint8_t, 2> data{gc.control_command, gc.group_select};
         const std::uint8_t fc = fdl::request_fc(fdl::Request::sdn_high, false, false);
         return fdl::encode(out, fdl::SapTelegram{fdl::kBroadcast, config_.address, fc, dp::kSapGlobalControl,
                                                  dp::kMasterSap, data});
     }
+    case Step::time_event: return fdl::encode_sd1(out, fdl::kBroadcast, config_.address, dp::kFcTimeEvent);
+    case Step::clock_value: return compose_clock_value(out);
     case Step::job:
     case Step::scan: return compose_job(out);
     case Step::gap:
@@ -60,13 +69,35 @@ std::size_t Master::compose(std::span<std::uint8_t> out) {
                                fdl::request_fc(fdl::Request::fdl_status, false, false));
     case Step::claim:
     case Step::token:
+    case Step::pass:
     case Step::end: break;
     }
     return fdl::encode_token(out, config_.address, config_.address);
 }
 
+std::size_t Master::compose_clock_value(std::span<std::uint8_t> out) {
+    std::array<std::uint8_t, dp::kClockValueOctets> value{};
+    static_cast<void>(dp::encode(dp::ClockValue{.time_event = event_time_, .previous = previous_event_}, value));
+    clock_value_due_ = false;
+    return fdl::encode(out, fdl::kBroadcast, config_.address, dp::kFcClockValue, value);
+}
+
 bool Master::wants_answer() const {
-    if (step_ == Step::token || step_ == Step::command) return false;
+    switch (step_) {
+    case Step::synch:
+    case Step::token:
+    case Step::command:
+    case Step::time_event:
+    case Step::clock_value:
+    case Step::pass: return false;
+    case Step::job: break;
+    case Step::claim:
+    case Step::slave:
+    case Step::absent:
+    case Step::scan:
+    case Step::gap:
+    case Step::end: return true;
+    }
     return step_ != Step::job || (!fdl::is_sdn(job_->function) && job_->address != fdl::kBroadcast);
 }
 
@@ -121,7 +152,9 @@ void Master::resume(Ticks quiet_from) {
 
 bool Master::expected(const fdl::Telegram& t) const {
     if (t.sd == fdl::kSc) return true;
-    return t.has_fc() && !t.fc.is_request() && t.destination() == config_.address && t.source() == asked();
+    if (!t.has_fc() || t.fc.is_request() || t.source() != asked()) return false;
+    if (t.destination() == config_.address) return true;
+    return t.destination() == fdl::kBroadcast && step_ == Step::slave && slaves_[polled()]->multicast();
 }
 
 void Master::answered(const fdl::Telegram& t, Ticks end) {

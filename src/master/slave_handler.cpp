@@ -54,10 +54,11 @@ std::size_t SlaveHandler::compose(std::span<std::uint8_t> out, std::uint8_t mast
     if (diagnosis_due()) return sap(dp::kSapSlaveDiag, {});
     if (state_ == SlaveState::parameters) return sap(dp::kSapSetPrm, set_prm_);
     if (state_ == SlaveState::configuration) return sap(dp::kSapChkCfg, config_.cfg);
-    if (mode == Mode::operate) return fdl::encode(out, config_.address, master, fc, outputs());
+    const std::uint8_t exchange = config_.publisher ? frame_count(Request::msrd) : fc;
+    if (mode == Mode::operate) return fdl::encode(out, config_.address, master, exchange, outputs());
     static constexpr std::array<std::uint8_t, 244> kZeroes{};
     const std::size_t size = config_.fail_safe ? 0u : config_.output_octets;
-    return fdl::encode(out, config_.address, master, fc, std::span{kZeroes}.first(size));
+    return fdl::encode(out, config_.address, master, exchange, std::span{kZeroes}.first(size));
 }
 
 // ---- answers -----------------------------------------------------------------------------------------------------

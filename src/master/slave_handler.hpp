@@ -80,6 +80,8 @@ public:
     /// Nothing came, not even after the last retry.
     void unanswered();
     void note_retry() { ++counters_.retries; }
+    /// The request due now is answered to everybody.
+    bool multicast() const { return config_.publisher && state_ == SlaveState::data_exchange && !diagnosis_due(); }
     /// Asked for so often that it makes no sense to ask every cycle.
     bool given_up() const { return state_ == SlaveState::absent && tried_; }
     /// FC of a request with frame count bit; for jobs, which share the count with the cycle.

@@ -256,6 +256,21 @@ TEST_P(ChecksClockSync, Clock_Value_Check_Ena_compares_the_previous_time) {
     EXPECT_EQ(r.status(), cs::kViolation) << "a sequence was missed";
 }
 
+// proves: E081
+TEST_P(ChecksClockSync, the_check_passes_again_one_sequence_after_the_one_that_failed) {
+    Receiver r{recipe()};
+    r.b.write(r.at(cs::command), cs::kCheckEna);
+    tell(r.b, kTimeEvent);
+    r.value(kTime0, "C3 12 34 42 80 00 00 00");
+    EXPECT_EQ(r.status(), cs::kViolation) << "the first one cannot be known";
+    EXPECT_EQ(r.time(), "00 00 00 00 00 00 00 00");
+    r.b.acknowledge();
+    tell(r.b, kTimeEvent);
+    r.value(kTime1, kTime0);
+    EXPECT_EQ(r.status(), cs::kSetTime);
+    EXPECT_EQ(r.time(), kTime1);
+}
+
 TEST_P(ChecksClockSync, an_unacknowledged_interrupt_keeps_the_buffer) {
     Receiver r{recipe()};
     tell(r.b, kTimeEvent);
