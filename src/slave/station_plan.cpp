@@ -8,6 +8,7 @@
 
 #include <dpchip/driver/acyclic_layout.hpp>
 #include <dpchip/driver/layout.hpp>
+#include <dpchip/driver/slave_clock.hpp>
 #include <dpchip/dp/alarm.hpp>
 #include <dpchip/dp/set_prm.hpp>
 #include <dpchip/gsd/user_prm.hpp>
@@ -87,23 +88,37 @@ std::vector<driver::RamSize> ram_sizes(regmap::Variant variant) {
     return {driver::RamSize::bytes_2048};
 }
 
+/// What DP-V2 takes at the end of the RAM.
+struct Dpv2Room {
+    driver::DxbConfig dxb;
+    bool clock;
+    unsigned octets(std::uint8_t shift) const {
+        const unsigned segment = 1u << shift;
+        return (dxb.max_links != 0 ? driver::DxbSubscriber<driver::MemoryMappedBus>::room(dxb, shift) + segment : 0u) +
+               (clock ? driver::SlaveClock<driver::MemoryMappedBus>::kRoom : 0u);
+    }
+};
+
 /// Why the chip's RAM cannot hold it all; none when it can.
-driver::ConfigError fault_of(const driver::Config& c) {
+driver::ConfigError fault_of(const driver::Config& c, const Dpv2Room& room) {
     const driver::Layout cyclic = driver::lay_out(c);
-    return cyclic.error != driver::ConfigError::none ? cyclic.error : driver::lay_out_acyclic(c, cyclic).error;
+    if (cyclic.error != driver::ConfigError::none) return cyclic.error;
+    const driver::AcyclicLayout acyclic = driver::lay_out_acyclic(c, cyclic);
+    if (acyclic.error != driver::ConfigError::none) return acyclic.error;
+    return acyclic.used_bytes + room.octets(cyclic.shift) > cyclic.ram_bytes ? driver::ConfigError::acyclic_space : driver::ConfigError::none;
 }
 
 /// Class-2 connections are given up last of all, one after the other.
-bool fits_with_fewer_connections(driver::Config& c) {
+bool fits_with_fewer_connections(driver::Config& c, const Dpv2Room& room) {
     while (c.dpv1.connections > 1) {
         --c.dpv1.connections;
-        if (fault_of(c) == driver::ConfigError::none) return true;
+        if (fault_of(c, room) == driver::ConfigError::none) return true;
     }
     return false;
 }
 
 /// Finds room: generous lengths in either RAM, then less, then only what the station needs.
-void choose_lengths(driver::Config& c, const gsd::Configuration& configuration) {
+void choose_lengths(driver::Config& c, const gsd::Configuration& configuration, const Dpv2Room& dpv2) {
     const std::size_t needed_prm = dp::kSetPrmHeader + std::size_t{c.prm_rules.min_octets};
     driver::ConfigError error = driver::ConfigError::none;
     for (const unsigned room : {244u, 96u, 0u})
@@ -111,10 +126,10 @@ void choose_lengths(driver::Config& c, const gsd::Configuration& configuration) 
             c.ram = ram;
             c.max_prm = clamp_octets(std::max<std::uint64_t>(needed_prm, room), 7, 244);
             c.max_cfg = clamp_octets(std::max<std::uint64_t>(configuration.cfg.size(), room), 0, 244);
-            error = fault_of(c);
+            error = fault_of(c, dpv2);
             if (error == driver::ConfigError::none) return;
         }
-    if (fits_with_fewer_connections(c)) return;
+    if (fits_with_fewer_connections(c, dpv2)) return;
     const auto kind = error >= driver::ConfigError::dout_space ? SlaveError::Kind::ram : SlaveError::Kind::chip;
     throw SlaveError{kind, std::string{regmap::traits(c.variant).name} + ": " + driver::name(error) + " (" +
                                std::to_string(configuration.input_octets) + " octets of inputs, " +
@@ -206,7 +221,20 @@ StationPlan::StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup) {
         c.dpv1 = acyclic_config(gsd, setup, c.max_diag);
         if (c.dpv1.connections != 0) c.user_timer = driver::UserTimer::ms_10;  // for their timeouts
     }
-    choose_lengths(c, configuration);
+    if (t.dxb && gsd.dpv1.slave) {
+        publisher = gsd.dpv2.publisher;
+        if (gsd.dpv2.subscriber) dxb = {clamp_octets(gsd.dpv2.dxb_max_link_count, 1, dp::kMaxDxbLinks), clamp_octets(gsd.dpv2.dxb_max_data_length, 1, dp::kMaxPublished)};
+        clock = gsd.dpv2.time_sync && t.clock_sync;
+        blocks = publisher || dxb.max_links != 0 || clock || gsd.dpv2.isochron_mode || gsd.dpv2.prm_cmd;
+        if (blocks) c.prm_rules.max_octets = dp::kMaxUserPrm;
+    }
+    choose_lengths(c, configuration, {dxb, clock});
+}
+
+driver::PrmRules StationPlan::ext_prm_rules() const {
+    driver::PrmRules rules = ext_prm.rules();
+    if (dpv2()) rules.max_octets = dp::kMaxSetPrm;
+    return rules;
 }
 
 }  // namespace dpchip::slave

@@ -10,6 +10,7 @@
 
 #include <dpchip/core/clock.hpp>
 #include <dpchip/driver/config.hpp>
+#include <dpchip/driver/dxb_subscriber.hpp>
 #include <dpchip/gsd/configuration.hpp>
 #include <dpchip/gsd/gsd.hpp>
 #include <dpchip/regmap/options.hpp>
@@ -68,6 +69,13 @@ struct StationPlan {
     gsd::Configuration configuration;
     OwnedPrmRules prm, ext_prm;
     driver::Config driver;
+    driver::DxbConfig dxb{};      ///< Subscriber_supp
+    bool publisher = false;       ///< Publisher_supp
+    bool clock = false;           ///< Time_Sync_supp
+    bool blocks = false;          ///< blocks of DP-V2 are looked for in the parameters: a DP-V1 slave that knows any of them
+    bool dpv2() const { return blocks; }
+    /// Those of ext_prm; blocks of DP-V2 may follow what the GSD describes.
+    driver::PrmRules ext_prm_rules() const;
 
     /// Throws GsdError for modules, SlaveError for address, chip and RAM.
     StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup);

@@ -23,6 +23,7 @@ VirtualSlave::VirtualSlave(const gsd::Gsd& gsd, const SlaveSetup& setup)
     stored_ = {setup.address, setup.no_add_change};
     const driver::ConfigError error = driver_.configure(plan_.driver);
     if (error != driver::ConfigError::none) throw SlaveError{SlaveError::Kind::chip, driver::name(error)};
+    if (!configure_dpv2()) throw SlaveError{SlaveError::Kind::ram, "the RAM is too small for the links or the clock"};
     driver_.start();
     write_inputs();
     run_firmware_if_due();
@@ -49,6 +50,7 @@ void VirtualSlave::advance(Ticks to) {
 /// Moves the chip, and lets the firmware run when it is its turn.
 void VirtualSlave::step(Ticks local) {
     chip_.advance(local);
+    if (plan_.driver.sync_ena) look_at_sync();
     run_firmware_if_due();
 }
 
@@ -147,7 +149,8 @@ void VirtualSlave::count_answer(const fdl::Transmission& answer) {
 }
 
 driver::Verdict VirtualSlave::Firmware::set_ext_prm(std::span<const std::uint8_t> octets) {
-    if (driver::check(slave->plan_.ext_prm.rules(), octets) == driver::PrmFault::none) return driver::Verdict::accept;
+    const bool right = driver::check(slave->plan_.ext_prm_rules(), octets) == driver::PrmFault::none;
+    if (right && (!slave->plan_.dpv2() || slave->take_blocks(octets))) return driver::Verdict::accept;
     ++slave->counters_.prm_refused;
     return driver::Verdict::refuse;
 }

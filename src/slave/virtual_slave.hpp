@@ -16,9 +16,12 @@
 #include <dpchip/core/clock.hpp>
 #include <dpchip/core/fixed_queue.hpp>
 #include <dpchip/driver/dpv1.hpp>
+#include <dpchip/driver/isochron.hpp>
+#include <dpchip/driver/redundancy.hpp>
 #include <dpchip/fdl/transmission.hpp>
 #include <dpchip/gsd/gsd.hpp>
 #include <dpchip/slave/acyclic.hpp>
+#include <dpchip/slave/dpv2.hpp>
 #include <dpchip/slave/error.hpp>
 #include <dpchip/slave/io_behaviour.hpp>
 #include <dpchip/slave/station_plan.hpp>
@@ -101,6 +104,23 @@ public:
         return events_.pop();
     }
 
+    // ---- DP-V2, as far as the GSD says so -----------------------------------------------------------------------
+    /// Told of samples, SYNCHs and the time; null: nobody. It must outlive the slave.
+    void set_handler(Dpv2Handler* handler) { dpv2_handler_ = handler; }
+    const Dpv2Counters& dpv2_counters() const { return dpv2_counters_; }
+    /// Links of the present parameters.
+    std::span<const dp::DxbLink> links() const { return dxb_.links(); }
+    /// Link_Status of link `n` of links(): dp::kLinkStatus and its kind.
+    std::uint8_t link_status(std::size_t n) { return dxb_.link_status(n); }
+    /// How regular the SYNC pulses come, in ticks of the station's own crystal.
+    const driver::SynchMeter& synch_meter() const { return synch_meter_; }
+    /// The time as the slave has it; nothing before the first Clock_Value. Advance first: it is that of the chip's now().
+    std::optional<dp::NetworkTime> time() const {
+        if (!plan_.clock || !slave_clock_.valid()) return std::nullopt;
+        return slave_clock_.now(local_ns());
+    }
+    const driver::RedundantHalf& redundancy() const { return redundancy_; }
+
     /// The user wants new parameters: to WAIT-PRM.
     void leave_master() { driver_.leave_master(); run_firmware_if_due(); }
     /// Go_Offline and Start again.
@@ -132,6 +152,10 @@ private:
     /// The application on top of the driver.
     struct Firmware : driver::AcyclicEvents {
         VirtualSlave* slave = nullptr;
+        driver::Verdict set_prm(const dp::SetPrm& prm);
+        std::uint16_t own_interrupts() const;
+        std::uint16_t more_mode0() const;
+        void serve_own(std::uint16_t irr);
         void prm_refused(driver::PrmFault) { ++slave->counters_.prm_refused; }
         driver::Verdict set_ext_prm(std::span<const std::uint8_t> octets);
         void cfg_refused() { ++slave->counters_.cfg_refused; }
@@ -163,6 +187,11 @@ private:
     void step(Ticks local);
     void run_firmware_if_due();
     void write_inputs();
+    bool configure_dpv2();
+    bool take_blocks(std::span<const std::uint8_t> octets);
+    void obey(const dp::PrmCmd& command);
+    void look_at_sync();
+    std::uint64_t local_ns() const { return static_cast<std::uint64_t>(core::to_ns(chip_.now())); }
     void count_request(const fdl::Transmission& heard);
     void count_answer(const fdl::Transmission& answer);
 
@@ -187,6 +216,13 @@ private:
     chip::Chip<> chip_;
     Firmware firmware_;
     driver::Vpc3<Bus, Firmware, 1, driver::Dpv1<driver::kMaxConnections, 16>> driver_;
+    bool wd_on_ = false;                 // WD_On of the present parameters
+    driver::DxbSubscriber<Bus> dxb_{Bus{&chip_}};
+    driver::SlaveClock<Bus> slave_clock_{Bus{&chip_}};
+    driver::SynchMeter synch_meter_;
+    driver::RedundantHalf redundancy_;
+    Dpv2Handler* dpv2_handler_ = nullptr;
+    Dpv2Counters dpv2_counters_{};
 };
 
 }  // namespace dpchip::slave
