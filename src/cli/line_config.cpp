@@ -76,6 +76,8 @@ SlaveEntry read_slave(const toml::table& table, const std::string& file) {
     s.crystal_ppb = static_cast<std::int32_t>(t.integer("crystal_ppb", -1'000'000, 1'000'000).value_or(0));
     s.firmware_delay = t.duration("firmware_delay").value_or(Ticks{});
     s.user_watchdog = static_cast<std::uint16_t>(t.integer("user_watchdog", 0, 65535).value_or(0));
+    s.records = read_records(t, file, [&](const std::string& path) { return beside(file, path); });
+    s.identification = read_identification(t, file);
     if (const auto v = t.integer("watchdog_ms", 0, 650'250)) s.watchdog_ms = static_cast<std::uint32_t>(*v);
     s.group = static_cast<std::uint8_t>(t.integer("group", 0, 255).value_or(0));
     s.sync = t.boolean("sync").value_or(false);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dpchip/cli/failure.hpp>
+#include <dpchip/cli/record_config.hpp>
 #include <dpchip/cli/units.hpp>
 #include <dpchip/gsd/user_prm.hpp>
 #include <dpchip/live/line.hpp>
@@ -36,6 +37,8 @@ struct SlaveEntry {
     std::int32_t crystal_ppb = 0;
     Ticks firmware_delay{};
     std::uint16_t user_watchdog = 0;
+    std::vector<slave::Record> records;                       ///< DP-V1
+    std::optional<IdentificationEntry> identification{};
     // What its master does with it.
     std::optional<std::uint32_t> watchdog_ms{};
     std::uint8_t group = 0;

@@ -115,6 +115,8 @@ void Server::keep_addresses() {
 
 void Server::tell_changes() {
     for (Served& s : served_) {
+        while (const auto event = s.slave->take_event())
+            spdlog::info("slave {} {}: {}", s.slave->stored_address().address, s.slave->name(), slave::text(*event));
         std::string now = state_text(*s.slave);
         if (now == s.said) continue;
         if (!s.said.empty()) spdlog::info("slave {} {}: {}", s.slave->stored_address().address, s.slave->name(), now);

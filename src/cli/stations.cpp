@@ -64,6 +64,8 @@ std::unique_ptr<slave::VirtualSlave> make_slave(const gsd::Gsd& gsd, const Slave
     setup.clock = core::Clock{entry.crystal_ppb, at};
     setup.firmware_delay = entry.firmware_delay;
     setup.user_watchdog = entry.user_watchdog;
+    setup.records = entry.records;
+    if (entry.identification) setup.identification = identification(gsd, *entry.identification);
     try {
         return std::make_unique<slave::VirtualSlave>(gsd, setup);
     } catch (const gsd::GsdError& e) {
