@@ -106,7 +106,7 @@ public:
 
     // ---- DP-V2, as far as the GSD says so -----------------------------------------------------------------------
     /// Told of samples, SYNCHs and the time; null: nobody. It must outlive the slave.
-    void set_handler(Dpv2Handler* handler) { dpv2_handler_ = handler; }
+    void set_dpv2_handler(Dpv2Handler* handler) { dpv2_handler_ = handler; }
     const Dpv2Counters& dpv2_counters() const { return dpv2_counters_; }
     /// Links of the present parameters.
     std::span<const dp::DxbLink> links() const { return dxb_.links(); }

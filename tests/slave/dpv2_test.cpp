@@ -62,7 +62,7 @@ struct Told : Dpv2Handler {
 
 struct Rig {
     explicit Rig(const std::string& abilities) : gsd{station(abilities)}, slave{gsd, {.modules = {"2 in, 2 out"}, .address = 8}} {
-        slave.set_handler(&told);
+        slave.set_dpv2_handler(&told);
         slave.chip().options().baud_probe_ms.fill(1);
         EXPECT_TRUE(master.find_baud());
     }
