@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A master on a live line.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <dpchip/cli/live_master.hpp>
@@ -10,6 +12,8 @@ namespace {
 /// A program is no hardware: also on serial lines it waits longer for an answer than the profile says, because the
 /// adapter and the operating system hand octets over when they like.
 constexpr Ticks kSerialPatience = core::milliseconds(50);
+/// A master that only asks now and then does not fill a pty with tokens.
+constexpr Ticks kIdleCycle = core::milliseconds(5);
 
 master::MasterConfig master_config_of(const LineConfig& config, const LiveMaster::Options& options) {
     if (config.masters.size() > 1) refuse(config.masters[1].at, "this program is one master; one [[master]] is possible");
@@ -22,6 +26,7 @@ master::MasterConfig master_config_of(const LineConfig& config, const LiveMaster
     m.gap_factor = entry.gap_factor;
     m.min_cycle = entry.min_cycle;
     m.mode = options.mode == master::Mode::operate ? entry.mode : options.mode;
+    if (m.mode == master::Mode::stop) m.min_cycle = std::max(m.min_cycle, kIdleCycle);
     if (config.slot_time) m.slot_time = config.slot_time->at(m.baud);
     else if (options.slot_time) m.slot_time = *options.slot_time;
     return m;

@@ -31,7 +31,7 @@ std::vector<Application::Wish> wishes(const LineConfig& config, const SessionOpt
 
 MasterSession::MasterSession(const LineConfig& config, const SessionOptions& options)
     : options_{options}, live_{std::make_unique<LiveMaster>(config, LiveMaster::Options{})}, application_{wishes(config, options)},
-      said_(config.slaves.size()), lost_before_(config.slaves.size()), at_the_end_(config.slaves.size()) {
+      said_(config.slaves.size()), lost_before_(config.slaves.size()) {
     if (config.slaves.empty()) throw Failure{ExitCode::usage, "no slave to drive: give --gsd FILE --address N, or a LINE.toml with [[slave]]"};
     live_->master().on_cycle(application_);
 }
@@ -81,7 +81,11 @@ void MasterSession::leave() {
     master::Master& m = live_->master();
     counters_ = m.counters();
     cycle_ = m.cycle();
-    for (std::size_t n = 0; n < m.size(); ++n) at_the_end_[n] = m.slave(n).exchanging();
+    rows_at_the_end_ = rows();
+    for (std::size_t n = 0; n < m.size(); ++n) {
+        const master::SlaveHandler& s = m.slave(n);
+        at_the_end_.push_back({s.exchanging(), hex_text(s.outputs(), 244), hex_text(s.inputs(), 244)});
+    }
     live_->line().resume();
     m.set_mode(master::Mode::clear);
     const std::uint64_t until = m.cycle().cycles + 3;
@@ -115,7 +119,7 @@ Rows MasterSession::rows() const {
 bool MasterSession::good() const {
     if (!reached_ || application_.wrong() != 0) return false;
     for (std::size_t n = 0; n < at_the_end_.size(); ++n)
-        if (!at_the_end_[n] || lost(n) != 0) return false;
+        if (!at_the_end_[n].exchanging || lost(n) != 0) return false;
     return !options_.cycles || stopped_ || cycle_.cycles >= *options_.cycles;
 }
 
@@ -128,7 +132,7 @@ ExitCode MasterSession::report() const {
 
 void MasterSession::report_text(bool ok) const {
     const master::Master& m = live_->master();
-    print(rows());
+    print(rows_at_the_end_);
     if (reached_) {
         std::printf("all %zu slave%s in data exchange after %s\n", m.size(), m.size() == 1 ? "" : "s", time_text(reached_after_).c_str());
         if (cycle_.cycles != 0)
@@ -139,11 +143,11 @@ void MasterSession::report_text(bool ok) const {
     }
     for (std::size_t n = 0; n < m.size(); ++n) {
         const master::SlaveHandler& s = m.slave(n);
-        if (!at_the_end_[n]) spdlog::error("slave {} {}: {}", s.config().address, s.config().name, trouble(s));
+        if (!at_the_end_[n].exchanging) spdlog::error("slave {} {}: {}", s.config().address, s.config().name, trouble(s));
         else if (lost(n) != 0) spdlog::error("slave {} {}: lost {} times", s.config().address, s.config().name, lost(n));
         if (application_.checked(n).wrong != 0)
             spdlog::error("slave {} {}: {}", s.config().address, s.config().name, application_.checked(n).first_wrong);
-        if (s.diagnosis().size() <= dp::kDiagHeader && at_the_end_[n]) continue;
+        if (s.diagnosis().size() <= dp::kDiagHeader && at_the_end_[n].exchanging) continue;
         if (!s.diagnosis().empty()) std::printf("slave %d diagnosis: %s\n", s.config().address, trace::diag_text(s.diagnosis(), s.config().address, &live_->texts()).words.c_str());
     }
     if (ok) return;
@@ -166,15 +170,15 @@ void MasterSession::report_json(bool ok) const {
         nlohmann::ordered_json e;
         e["address"] = s.config().address;
         e["name"] = s.config().name;
-        e["data_exchange"] = static_cast<bool>(at_the_end_[n]);
+        e["data_exchange"] = at_the_end_[n].exchanging;
         e["fault"] = master::name(s.fault());
         e["exchanges"] = s.counters().exchanges;
         e["compared"] = c.compared;
         e["wrong"] = c.wrong;
         e["retries"] = s.counters().retries;
         e["lost"] = lost(n);
-        e["outputs"] = hex_text(s.outputs(), 244);
-        e["inputs"] = hex_text(s.inputs(), 244);
+        e["outputs"] = at_the_end_[n].outputs;
+        e["inputs"] = at_the_end_[n].inputs;
         e["diagnosis"] = hex_text(s.diagnosis(), 244);
         j["slaves"].push_back(std::move(e));
     }

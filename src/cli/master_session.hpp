@@ -47,7 +47,12 @@ private:
     std::vector<std::uint64_t> lost_before_;
     Ticks reached_after_{};
     bool reached_ = false, stopped_ = false;
-    std::vector<bool> at_the_end_;        ///< in data exchange, when leaving began
+    struct End {
+        bool exchanging;
+        std::string outputs, inputs;
+    };
+    std::vector<End> at_the_end_;         ///< when leaving began
+    Rows rows_at_the_end_;
     master::MasterCounters counters_{};   ///< of the exchange
     master::CycleStatistics cycle_{};
 };

@@ -102,6 +102,24 @@ void Simulation::arm(const EventEntry& e) {
     fault_source_.armed.push_back({e.fault, e.count, sender});
 }
 
+void Simulation::diagnose(Member& m, const EventEntry& e) {
+    if (!m.on) refuse(e.at, title(m.entry) + " has no power");
+    const driver::DiagFlags flags{e.ext_diag, e.stat_diag, false};
+    if (m.slave->set_diagnosis(e.octets, flags) == driver::DiagResult::too_long)
+        refuse(e.at, fmt::format("{} has room for {} octets of diagnosis with the header", title(m.entry), m.slave->plan().driver.max_diag));
+    if (m.plugged) segment_.touch(m.index);
+}
+
+/// Global_Control, and what it does to the check of values.
+void Simulation::control(const EventEntry& e) {
+    if (!master_->global_control({e.command, e.groups})) refuse(e.at, "too many Global_Control at one time");
+    modes_ |= e.command & (dp::kGcSync | dp::kGcFreeze | dp::kGcClearData);
+    if (e.command == 0) modes_ &= static_cast<std::uint8_t>(~dp::kGcClearData);
+    if ((e.command & dp::kGcUnsync) != 0) modes_ &= static_cast<std::uint8_t>(~dp::kGcSync);
+    if ((e.command & dp::kGcUnfreeze) != 0) modes_ &= static_cast<std::uint8_t>(~dp::kGcFreeze);
+    application_->disturb(modes_ != 0);
+}
+
 void Simulation::happen(const EventEntry& e) {
     spdlog::info("{}: {}", time_text(e.when), name(e.kind));
     segment_.settle();
@@ -121,23 +139,8 @@ void Simulation::happen(const EventEntry& e) {
     case EventKind::plug:
         if (!m.on || m.plugged) refuse(e.at, title(m.entry) + (m.on ? " is on the line already" : " has no power"));
         return attach(m);
-    case EventKind::diagnosis: {
-        if (!m.on) refuse(e.at, title(m.entry) + " has no power");
-        const driver::DiagFlags flags{e.ext_diag, e.stat_diag, false};
-        if (m.slave->set_diagnosis(e.octets, flags) == driver::DiagResult::too_long)
-            refuse(e.at, fmt::format("{} has room for {} octets of diagnosis with the header", title(m.entry), m.slave->plan().driver.max_diag));
-        if (m.plugged) segment_.touch(m.index);
-        return;
-    }
-    case EventKind::global_control: {
-        if (!master_->global_control({e.command, e.groups})) refuse(e.at, "too many Global_Control at one time");
-        modes_ |= e.command & (dp::kGcSync | dp::kGcFreeze | dp::kGcClearData);
-        if (e.command == 0) modes_ &= static_cast<std::uint8_t>(~dp::kGcClearData);
-        if ((e.command & dp::kGcUnsync) != 0) modes_ &= static_cast<std::uint8_t>(~dp::kGcSync);
-        if ((e.command & dp::kGcUnfreeze) != 0) modes_ &= static_cast<std::uint8_t>(~dp::kGcFreeze);
-        application_->disturb(modes_ != 0);
-        return;
-    }
+    case EventKind::diagnosis: return diagnose(m, e);
+    case EventKind::global_control: return control(e);
     case EventKind::fault: return arm(e);
     case EventKind::mode:
         master_->set_mode(e.mode);

@@ -67,6 +67,8 @@ private:
     void detach(Member& m);
     void power_on(Member& m, const EventEntry& event);
     void arm(const EventEntry& event);
+    void diagnose(Member& m, const EventEntry& event);
+    void control(const EventEntry& event);
     void advance_to(Ticks end, std::optional<std::uint64_t> cycles);
 
     LineConfig config_;
