@@ -100,13 +100,14 @@ void receive(C& c) {
     }
 }
 
+constexpr void stop_monitoring(State& s) { timers::stop(s, Timer::dxb_monitor); }
+
+/// The next monitoring time; none without response time monitoring, which a Set_Prm may have switched off meanwhile.
 template <class C>
 void start_monitoring(C& c) {
-    if (!c.traits->dxb || c.s.wd_on == 0) return;
-    timers::start(c.s, Timer::dxb_monitor, wd::t_wd_end(c));
+    stop_monitoring(c.s);
+    if (c.traits->dxb && c.s.wd_on != 0) timers::start(c.s, Timer::dxb_monitor, wd::t_wd_end(c));
 }
-
-constexpr void stop_monitoring(State& s) { timers::stop(s, Timer::dxb_monitor); }
 
 /// Figure 7-14, rows 3 and 4: the monitoring time is over for all links; one interrupt if a link broke.
 template <class C>

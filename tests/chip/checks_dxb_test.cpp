@@ -343,5 +343,13 @@ TEST_P(ChecksStepBC, a_publisher_still_answers_ordinary_Data_Exchange_to_its_mas
     EXPECT_EQ(b.ask(kDx1234), kInputs);
 }
 
+TEST_P(ChecksStepBC, monitoring_ends_when_a_Set_Prm_in_DATA_EXCH_switches_WD_On_off) {
+    Bench b{recipe(), Stage::p2};
+    EXPECT_EQ(b.ask("68 0C 0C 68 88 82 5D 3D 3E 80 01 01 0B 47 11 00 C7 16"), kSc);
+    b.run(1_s);
+    EXPECT_EQ(b.dp_state(), kDataExch);
+    EXPECT_EQ(b.irr() & irq::dxb_link_error, 0);
+}
+
 }  // namespace
 }  // namespace dpchip::checks
