@@ -112,9 +112,8 @@ function(dpchip_test name)
   target_compile_definitions(test_${name} PRIVATE
     DPCHIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" DPCHIP_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_precompile_headers(test_${name} PRIVATE <gtest/gtest.h>)
-  # Tests are compiled more often than they are run: what they test is optimised, they are not. With less optimisation
-  # g++ sees null pointers in the standard library that are not there.
-  target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1> -Wno-null-dereference)
+  # Tests are compiled more often than they are run: what they test is optimised, they are not.
+  target_compile_options(test_${name} PRIVATE ${DPCHIP_LITTLE_OPTIMISED})
   set_property(GLOBAL APPEND PROPERTY DPCHIP_TEST_PROGRAMS test_${name})
   add_test(NAME ${name} COMMAND test_${name} --gtest_brief=1 --gtest_output=xml:${PROJECT_BINARY_DIR}/tests/${name}.xml
            WORKING_DIRECTORY ${PROJECT_BINARY_DIR})
