@@ -68,7 +68,7 @@ struct Receiver {
     chip::CsState state() const { return b.chip().state().cs_state; }
 };
 
-// proves: VPC3C 7.3.3-01, VPC3C 7.3.3-03, VPC3C 7.3.3-05, E004
+// proves: VPC3C 5.1.1-14, VPC3C 5.3.1-11, VPC3C 7.3.3-01, VPC3C 7.3.3-03, VPC3C 7.3.3-05, E004
 TEST_P(ChecksClockSync, C130_Time_Event_and_Clock_Value_set_the_time) {
     Receiver r{recipe()};
     tell(r.b, kTimeEvent);

@@ -42,7 +42,7 @@ void run_to_monitoring(Bench& b) {
     b.run_to(due + 2_clk);
 }
 
-// proves: VPC3C 7.3.1-01, VPC3C 7.3.1-03, E077
+// proves: VPC3C 6.2.2-16, VPC3C 7.3.1-01, VPC3C 7.3.1-03, E077
 TEST_P(ChecksStepBC, C123_a_publisher_answers_function_code_7_to_everybody) {
     Recipe r = recipe();
     Bench b{r, Stage::configured};
@@ -59,7 +59,8 @@ TEST_P(ChecksStepBC, C124_without_Publisher_Enable_function_code_7_is_not_even_a
     EXPECT_EQ(b.irr(), 0);
 }
 
-// proves: VPC3C 7.3.1-01, VPC3C 7.3.1-08, VPC3C 7.3.1-10
+// proves: VPC3C 1-04, VPC3C 4.1-12, VPC3C 4.3-14..15, VPC3C 4.3-33..34, VPC3C 4.3-42..43, VPC3C 5.3.1-02,
+//   VPC3C 7.3.1-01, VPC3C 7.3.1-08, VPC3C 7.3.1-10
 TEST_P(ChecksStepBC, C125_a_subscriber_gets_the_samples_of_its_link) {
     Bench b = subscriber(recipe(), kOneLink);
     tell(b, kPublished);
@@ -76,7 +77,7 @@ TEST_P(ChecksStepBC, C126_data_of_another_length_are_a_link_error) {
     EXPECT_EQ(take_sample(b), "nothing new");
 }
 
-// proves: VPC3C 7.3.1-11
+// proves: VPC3C 5.3.1-04, VPC3C 7.3.1-11
 TEST_P(ChecksStepBC, C127_the_links_are_monitored_with_the_watchdog_time) {
     Bench b = subscriber(recipe(), kOneLink);
     tell(b, kPublished);
@@ -136,7 +137,7 @@ TEST_P(ChecksStepBC, every_row_of_figure_7_14_from_every_link_status) {
 
 // ---- layouts --------------------------------------------------------------------------------------------------------
 
-// proves: VPC3C 7.3.1-06
+// proves: VPC3C 4.3-35..36, VPC3C 7.3.1-06
 TEST_P(ChecksStepBC, figure_7_10_a_pair_of_octets_per_link_behind_the_header) {
     Bench b = subscriber(recipe(), {{9, 4, 1, 2}, {10, 1, 0, 1}, {11, 2, 0, 2}});
     EXPECT_EQ(text(b.ram(kStatusCells, 10)), "0A 83 00 00 09 00 0A 00 0B 00");
@@ -157,7 +158,7 @@ TEST_P(ChecksStepBC, figure_7_11_a_sample_may_fill_244_octets_behind_publisher_a
     EXPECT_EQ(take_sample(b), text(expected));
 }
 
-// proves: VPC3C 7.3.1-09..10, E021
+// proves: VPC3C 4.2-22, VPC3C 7.3.1-09..10, E021
 TEST_P(ChecksStepBC, figures_7_12_and_7_13_the_machine_moves_like_that_of_the_outputs) {
     Bench b = subscriber(recipe(), kOneLink);
     EXPECT_EQ(b.peek(control::dxbout_buffer_sm), 0xE1) << "F 3, U 2, N nil, D 1";

@@ -35,7 +35,7 @@ Bench synchronous(Recipe r, std::uint8_t mode2, Compare compare = {}) {
 
 bool pin_13_high(const Bench& b) { return b.chip().level(chip::Pin::xdataexch_sync) == chip::Level::high; }
 
-// proves: VPC3C 7.3.2-02, VPC3C 7.3.2-04, E040
+// proves: VPC3C 1-04, VPC3C 4.2-35, VPC3C 5.1.3-08, VPC3C 7.3.2-02, VPC3C 7.3.2-04, E040
 TEST_P(ChecksStepBC, C128_a_SYNCH_gives_a_pulse_of_48_clk_and_New_GC_Command) {
     Bench b = synchronous(recipe(), kIsochron);
     b.write(org::r_gc_command, 0xFF);
@@ -98,7 +98,7 @@ TEST_P(ChecksStepBC, figure_7_17_Simple_Sync_Mode) {
 
 // ---- the SYNCH telegram ---------------------------------------------------------------------------------------------
 
-// proves: VPC3C 7.3.2-04
+// proves: VPC3C 4.2-36..37, VPC3C 7.3.2-04
 TEST_P(ChecksStepBC, figure_7_16_both_octets_are_compared) {
     struct Row { std::uint8_t command, group; bool synch; };
     for (const Row& row : {Row{0x04, 0x81, true}, Row{0x04, 0x80, false}, Row{0x00, 0x81, false}, Row{0x05, 0x81, false}}) {
@@ -176,7 +176,7 @@ TEST_P(ChecksStepBC, Sync_PW_counts_in_twelfths_of_a_microsecond) {
     EXPECT_EQ(b.irr(), irq::new_gc_command);
 }
 
-// proves: E041
+// proves: VPC3C 5.1.3-07, E041
 TEST_P(ChecksStepBC, SYNC_Pol_turns_pin_13_round_in_both_modes) {
     for (const std::uint8_t mode : {kIsochron, kSimpleSync}) {
         Bench b = synchronous(recipe(), static_cast<std::uint8_t>(mode | m2::sync_pol));
@@ -232,6 +232,7 @@ TEST_P(ChecksStepBC, a_late_SYNCH_gives_a_late_pulse_and_a_missing_one_none) {
     for (std::size_t i = 0; i < ends.size(); ++i) EXPECT_EQ(edges[2 * i].at, ends[i] + 4_clk);
 }
 
+// proves: VPC3C 5.1.3-09
 TEST_P(ChecksStepBC, DX_Int_Port_does_nothing_with_SYNC_Ena) {
     Bench b = synchronous(recipe(), kIsochron | m2::dx_int_port);
     EXPECT_EQ(b.ask(kDx1234), kInputs);
