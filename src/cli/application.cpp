@@ -80,7 +80,8 @@ void Application::compare(Slave& s, const master::SlaveHandler& h) {
         if (std::ranges::equal(h.inputs(), s.expected)) return;
     }
     if (s.checked.wrong++ == 0)
-        s.checked.first_wrong = fmt::format("exchange {}: inputs {} instead of {}", s.checked.exchanges, hex_text(h.inputs()), hex_text(s.expected));
+        s.checked.first_wrong = fmt::format("exchange {}: inputs {} instead of {}{}", s.checked.exchanges, hex_text(h.inputs()),
+                                            s.wish.io->kind() == Kind::counter ? "a little more than " : "", hex_text(s.expected));
 }
 
 void Application::set_outputs(const Slave& s, std::size_t n, master::SlaveHandler& h) const {
