@@ -51,7 +51,7 @@ Answer serve_request(C& c) {
 /// A repeated request gets the answer it had, as far as the state still allows it (reference 2.5).
 template <class C>
 Answer repeat(const C& c) {
-    if (c.s.last_answer == Answer::none) return Answer::none;
+    if (c.s.last_answer == Answer::none || data_exchange::refused_multicast(c)) return Answer::none;
     const bool default_sap = !mac::has_dsap(c.s);
     const bool wants_data_exch =
         default_sap || c.s.last_answer == Answer::rd_input || c.s.last_answer == Answer::rd_output;
