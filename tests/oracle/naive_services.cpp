@@ -162,6 +162,9 @@ void NaiveSlave::compose() {
         o.push_back(octet(sum));
         o.push_back(0x16);
     }
+    // 2.5: SC stays SC. A Data_Exchange without inputs is still a service of DATA-EXCH.
+    const bool read = plan.reply == Reply::rd_input || plan.reply == Reply::rd_output;
+    if (o[0] == 0xE5 && read && !plan.retry && fcb_reply == plan.reply) fcb_reply = Reply::sc;
     plan.end = plan.start + 11 * static_cast<Time>(o.size()) * plan.bit;
 }
 
@@ -218,7 +221,10 @@ void NaiveSlave::answer_over() {
         diag_exchange_pending = false;
     }
     if (done.new_address >= 0) take_address(done.new_address);
-    if (done.dx_error && dp == DpSm::data_exch) cfg_fault = true;
+    if (done.dx_error) {  // 3.8; the fault is reported even when DATA-EXCH was left meanwhile
+        cfg_fault = true;
+        diag_changed();
+    }
     if ((done.dx_error || done.user_wd) && dp == DpSm::data_exch) leave_master();
     if (offline_wanted) offline_at = now;
 }

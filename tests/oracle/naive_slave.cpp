@@ -344,7 +344,8 @@ void NaiveSlave::carrier(Time at) {
         if (locked)
             for (unsigned b : {1u, 2u})
                 if (diag_owner[b] == 3) diag_owner[b] = 2;
-        if (leave) leave_master();
+        if (leave && dp == DpSm::data_exch) leave_master();
+        if (offline_wanted) execute_offline();  // the message cycle has ended
         update_pin();
     }
 }

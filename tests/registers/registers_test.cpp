@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Register conformance, exhaustively: every variant, bus mode, address 000H..FFFH, direction and value against the table
-// typed from the manuals (tests/oracle/register_table.txt; VPC3+C 4.1 to 4.3, 5.1 to 5.3; APC3 3.1 to 3.3, 4.1 to 4.3).
+// Register conformance, exhaustively: every variant, bus mode, address 000H..FFFH, direction and value against the
+// table typed from the manuals (tests/oracle/register_table.txt; VPC3+C 4.1 to 4.3, 5.1 to 5.3; APC3 3.1 to 3.3, 4.1
+// to 4.3).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,8 +21,16 @@ using Chip = dpchip::chip::Chip<dpchip::core::NoTrace>;
 using Word = std::uint16_t;
 using Byte = std::uint8_t;
 
-struct ReadRow { unsigned reset = 0; bool present = false, command = false; };
-struct WriteRow { unsigned mask = 0; int target = -1; bool offline_only = false, present = false; std::string effect; };
+struct ReadRow {
+    unsigned reset = 0;
+    bool present = false, command = false;
+};
+struct WriteRow {
+    unsigned mask = 0;
+    int target = -1;
+    bool offline_only = false, present = false;
+    std::string effect;
+};
 struct Table {
     std::array<ReadRow, 0x16> read;
     std::array<WriteRow, 0x16> write;
@@ -45,15 +54,22 @@ Table load_table(char chip) {
         } else {
             words >> target >> when;
             EXPECT_FALSE(table.write.at(a).present) << "two write rows for " << address;
-            table.write.at(a) = {number, target == "-" ? -1 : std::stoi(target, nullptr, 16), when == "offline", true, second};
+            table.write.at(a) = {number, target == "-" ? -1 : std::stoi(target, nullptr, 16), when == "offline", true,
+                                 second};
         }
     }
-    for (std::size_t a = 0; a < 0x16; ++a) EXPECT_TRUE(table.read[a].present && table.write[a].present) << "no row for " << a;
+    for (std::size_t a = 0; a < 0x16; ++a)
+        EXPECT_TRUE(table.read[a].present && table.write[a].present) << "no row for " << a;
     return table;
 }
 
 /// One chip as it is looked at: variant, bus mode, 2K or 4K.
-struct Case { Variant variant; char letter; BusMode mode; bool big; };
+struct Case {
+    Variant variant;
+    char letter;
+    BusMode mode;
+    bool big;
+};
 
 std::vector<Case> all_cases() {
     std::vector<Case> out;
@@ -67,15 +83,18 @@ std::vector<Case> all_cases() {
 }
 std::string case_name(const testing::TestParamInfo<Case>& p) {
     static constexpr const char* kNames[]{"vpc3a", "vpc3b", "vpc3c", "apc3", "spc3"};
-    return std::string{kNames[static_cast<unsigned>(p.param.variant)]} + (p.param.mode == BusMode::intel ? "_intel" : "_motorola") +
-           (p.param.big ? "_4k" : "");
+    return std::string{kNames[static_cast<unsigned>(p.param.variant)]} +
+           (p.param.mode == BusMode::intel ? "_intel" : "_motorola") + (p.param.big ? "_4k" : "");
 }
 
 /// Where an Intel address appears on this bus: word registers and R_User_WD_Value are swapped (4.2; reference 4.1).
 Word bus(Word a, BusMode mode) { return mode == BusMode::motorola && (a < 8 || a == 0x18 || a == 0x19) ? a ^ 1u : a; }
 
 /// The cell behind a bus address before swapping: 2K wraps at 800H, 1.5K folds 600H..7FFH by 400H (APC3 3.1).
-struct Place { Word address; bool violation; };
+struct Place {
+    Word address;
+    bool violation;
+};
 Place fold(Word a, const Case& c) {
     const bool spc3_class = c.letter == 'P' || c.letter == 'S';
     a &= c.big ? 0xFFFu : 0x7FFu;
@@ -89,7 +108,9 @@ protected:
         if (c.big) chip.write(0x0C, 0x81);
         end = c.big ? 0x1000 : (c.letter == 'P' || c.letter == 'S') ? 0x600 : 0x800;
     }
-    bool unchanged(const dpchip::chip::State& before) const { return std::memcmp(&before, &chip.state(), sizeof before) == 0; }
+    bool unchanged(const dpchip::chip::State& before) const {
+        return std::memcmp(&before, &chip.state(), sizeof before) == 0;
+    }
     std::vector<Byte> space() const {
         std::vector<Byte> out(end);
         for (Word a = 0; a < end; ++a) out[a] = chip.peek(bus(a, c.mode));
@@ -111,17 +132,11 @@ TEST_P(Registers, read_their_reset_value_and_peek_changes_nothing) {
         const unsigned intel = bus(place.address, c.mode);
         const unsigned seen = chip.peek(a);
         ASSERT_TRUE(unchanged(reset)) << "peek " << std::hex << a;
-        if (intel < 0x16) {
-            ASSERT_EQ(seen, table.read[intel].reset) << "peek " << std::hex << a;
-        }
+        if (intel < 0x16) { ASSERT_EQ(seen, table.read[intel].reset) << "peek " << std::hex << a; }
         ASSERT_EQ(chip.read(a), seen) << "read " << std::hex << a;
         const bool acts = intel < 0x16 && table.read[intel].command;
-        if (!acts && !place.violation) {
-            ASSERT_TRUE(unchanged(reset)) << "read " << std::hex << a;
-        }
-        if (place.violation) {
-            ASSERT_EQ(chip.peek(bus(4, c.mode)), 0x08) << "read " << std::hex << a;
-        }
+        if (!acts && !place.violation) { ASSERT_TRUE(unchanged(reset)) << "read " << std::hex << a; }
+        if (place.violation) { ASSERT_EQ(chip.peek(bus(4, c.mode)), 0x08) << "read " << std::hex << a; }
         if (acts || place.violation) chip.restore(reset);
     }
 }
@@ -152,7 +167,8 @@ TEST_P(Registers, every_RAM_cell_takes_every_value_and_no_other_cell_moves) {
 }
 
 /// What the table says about the space after a write; false when the write starts something (Mode-Reg 1).
-bool expect_write(const Table& table, bool mode1_readable, unsigned a, unsigned v, bool online, unsigned imr, std::vector<Byte>& space) {
+bool expect_write(const Table& table, bool mode1_readable, unsigned a, unsigned v, bool online, unsigned imr,
+                  std::vector<Byte>& space) {
     const WriteRow& row = table.write[a];
     const auto target = static_cast<std::size_t>(row.target < 0 ? 0 : row.target);
     if (row.offline_only && online) return true;
@@ -163,11 +179,12 @@ bool expect_write(const Table& table, bool mode1_readable, unsigned a, unsigned 
     space[0x02] = static_cast<Byte>(space[0x00] & ~imr);
     space[0x03] = static_cast<Byte>(space[0x01] & ~(imr >> 8));
     if (row.effect == "mode1_set") {
-        if (!online && (v & 1) != 0) return false;       // Start_VPC3
-        if (online && (v & 0x0C) != 0) return false;     // Go_Offline, User_LEAVE-MASTER
+        if (!online && (v & 1) != 0) return false;    // Start_VPC3
+        if (online && (v & 0x0C) != 0) return false;  // Go_Offline, User_LEAVE-MASTER
         if (mode1_readable) space[target] = static_cast<Byte>(space[target] | (v & 0x30));
     }
-    if (row.effect == "mode1_reset" && mode1_readable) space[target] = static_cast<Byte>(space[target] & ~(v & row.mask));
+    if (row.effect == "mode1_reset" && mode1_readable)
+        space[target] = static_cast<Byte>(space[target] & ~(v & row.mask));
     return true;
 }
 
@@ -199,9 +216,7 @@ TEST_P(Registers, every_write_of_a_control_parameter_does_what_the_table_says_an
                     if (predictable && !size_changed) {
                         ASSERT_EQ(space(), expected) << "write " << std::hex << a << " = " << v << " online " << online;
                     }
-                    if (!predictable && !online) {
-                        ASSERT_EQ(chip.peek(bus(4, c.mode)) & 1, 1) << "Start";
-                    }
+                    if (!predictable && !online) { ASSERT_EQ(chip.peek(bus(4, c.mode)) & 1, 1) << "Start"; }
                     chip.restore(before);
                 }
         }
