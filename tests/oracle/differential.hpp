@@ -67,7 +67,6 @@ private:
     void note_answer(Coverage* coverage);
 
     std::vector<Sent> chip_sent_;
-    std::size_t compared_ = 0;
     std::string stuck_;
     std::string open_request_;  ///< "DATA-EXCH owner Set_Prm", waiting for its answer
 };

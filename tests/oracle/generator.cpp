@@ -162,10 +162,12 @@ Step Generator::processor(const NaiveSlave& slave) {
     case 5: return cpu_write(0x08, 2);
     case 6: return cpu_write(0x08, any({0x10, 0x20, 0x12, 0x22}));
     case 7: return cpu_write(0x09, any({0x10, 0x20, 0xFE, 0xFF, 0x01, 0x30}));
-    case 8:
-        return cpu_write(any({0x06, 0x07, 0x0C, 0x12, 0x10, 0x11, 0x13, 0x14, 0x15}), slave.online     ? draw(256)
-                                                                                      : slave.four_k() ? 0x80
-                                                                                                       : 0);
+    case 8: {
+        // A Go_Offline on its way may be over before this write: no SYNC and no clock synchronisation, which naive has not.
+        const auto offline = slave.four_k() ? 0x80 : 0;
+        return cpu_write(any({0x06, 0x07, 0x0C, 0x12, 0x10, 0x11, 0x13, 0x14, 0x15}),
+                         slave.online ? draw(256) & 0xE7 : static_cast<decltype(draw(256))>(offline));
+    }
     case 9: return cpu_read(draw(9));
     case 10: return cpu_read(any({0x0A, 0x0C, 0x12, 0x13, 0x15}));
     case 11: return cpu_read(0x16 + draw(0x7EA));

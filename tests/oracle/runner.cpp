@@ -204,6 +204,7 @@ std::string Pair::send(const Step& step, Coverage* coverage) {
     open_request_.clear();  // an answer that has not begun is given up
     chip.carrier(Ticks{start});
     naive.carrier(start);
+    note_answer(coverage);
     if (std::string difference = compare(); !difference.empty()) return "when the telegram begins: " + difference;
     if (step.kind == Step::Kind::telegram) {
         dpchip::fdl::Transmission t;
@@ -260,7 +261,7 @@ void Pair::note_request(const Step& step) {
 }
 
 void Pair::note_answer(Coverage* coverage) {
-    for (std::size_t i = compared_; i < naive.sent.size(); ++i) {
+    for (std::size_t i = 0; i < naive.sent.size(); ++i) {
         if (!open_request_.empty() && coverage != nullptr) {
             const std::string key = open_request_ + ' ' + answer_kind(naive.sent[i].octets);
             coverage->answers.insert(key);
@@ -277,20 +278,23 @@ std::string Pair::compare() {
                    : what + ": model " + std::to_string(model) + ", oracle " + std::to_string(oracle_value) + "; ";
     };
     std::string out;
-    for (; compared_ < std::max(chip_sent_.size(), naive.sent.size()); ++compared_) {
-        const auto text = [&](const std::vector<Sent>& sent) {
-            if (compared_ >= sent.size()) return std::string{"nothing"};
-            return hex(sent[compared_].octets) + "at " + clk(sent[compared_].start) + " bit " +
-                   clk(sent[compared_].bit);
+    for (std::size_t i = 0; i < std::max(chip_sent_.size(), naive.sent.size()); ++i) {
+        const auto text = [i](const std::vector<Sent>& sent) {
+            if (i >= sent.size()) return std::string{"nothing"};
+            return hex(sent[i].octets) + "at " + clk(sent[i].start) + " bit " + clk(sent[i].bit);
         };
-        if (text(chip_sent_) != text(naive.sent)) {
-            out += "answer: model " + text(chip_sent_) + ", oracle " + text(naive.sent) + "; ";
-            break;
-        }
+        if (text(chip_sent_) == text(naive.sent)) continue;
+        out += "answer: model " + text(chip_sent_) + ", oracle " + text(naive.sent) + "; ";
+        break;
     }
+    chip_sent_.clear();
+    naive.sent.clear();
+    NaiveSlave plain{naive};
     for (unsigned a = 0; a < 0x16; ++a) {
         const unsigned model = chip.peek(static_cast<std::uint16_t>(bus_address(a, naive.motorola)));
-        const unsigned oracle_value = naive.peek(bus_address(a, naive.motorola));
+        const bool command = a == 0x09 || a == 0x0B || (a >= 0x0D && a <= 0x11);  // act; read from a copy each
+        const unsigned oracle_value =
+            command ? naive.peek(bus_address(a, naive.motorola)) : plain.read(bus_address(a, naive.motorola));
         if (model != oracle_value)
             out += "peek " + hex(a, 2) + ": model " + hex(model, 2) + ", oracle " + hex(oracle_value, 2) + "; ";
     }
