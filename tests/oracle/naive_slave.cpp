@@ -231,7 +231,7 @@ void NaiveSlave::write_control(unsigned address, unsigned value) {
     case 0x05: imr = high(imr); break;
     case 0x06:
         if (online) break;
-        if (kind.one_and_a_half_k && (value & 8) != 0 && (mode0 & 8) == 0) min_tsdr = 255;  // 3.4.4: combi operation
+        if (kind.one_and_a_half_k && ((value ^ mode0) & 8) != 0) min_tsdr = (value & 8) != 0 ? 255 : 11;  // 3.4.4
         mode0 = low(mode0) & mode0_bits;
         break;
     case 0x07:
