@@ -25,7 +25,11 @@ void catch_up(C& c, Ticks to) {
         c.s.now = c.s.user_clock_due;
         irq::raise(c, regmap::interrupt::user_timer_clock);
     }
-    c.s.user_clock_due += step * ((to - c.s.user_clock_due) / step + 1);
+    const Ticks last = c.s.user_clock_due + step * ((to - c.s.user_clock_due) / step);
+    c.s.user_clock_due = last + step;
+    if (!c.traits->user_timer) return;
+    c.s.now = last;
+    irq::raise(c, regmap::interrupt::user_timer_clock);  // pending already, but an IAR write in this CLK must not lose it
 }
 
 /// When the chip must be woken for a tick that X/INT would show; kNever when it changes nothing that is seen.

@@ -174,5 +174,18 @@ TEST_P(Checks, manual_5_4_3_the_monitoring_time_reaches_from_1_ms_to_650_s) {
     }
 }
 
+TEST_P(ChecksVpc3, a_tick_of_the_user_timer_survives_an_acknowledgement_in_the_same_CLK) {
+    Bench b{recipe(), Stage::searching};
+    const Ticks tick = b.chip().state().user_clock_due;
+    for (const std::int64_t n : {0, 1}) {  // the first tick, and one that comes while the event is pending
+        b.run_to(tick + 1_ms * n);
+        b.write(control::int_ack_reg_low, 0x10);
+        EXPECT_EQ(b.peek(control::int_req_reg_low) & 0x10, 0x10) << n;
+    }
+    b.run(2_clk);
+    b.write(control::int_ack_reg_low, 0x10);
+    EXPECT_EQ(b.peek(control::int_req_reg_low) & 0x10, 0);
+}
+
 }  // namespace
 }  // namespace dpchip::checks
