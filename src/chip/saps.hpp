@@ -53,8 +53,8 @@ template <class C>
 Answer repeat(const C& c) {
     if (c.s.last_answer == Answer::none || data_exchange::refused_multicast(c)) return Answer::none;
     const bool default_sap = !mac::has_dsap(c.s);
-    const bool wants_data_exch =
-        default_sap || c.s.last_answer == Answer::rd_input || c.s.last_answer == Answer::rd_output;
+    const std::uint8_t dsap = default_sap ? std::uint8_t{0} : mac::dsap(c.s);
+    const bool wants_data_exch = default_sap || dsap == 56 || dsap == 57;
     if (wants_data_exch && c.s.dp_state != DpState::data_exch) return Answer::rs;
     if (default_sap && !dp::is_owner(c.s, mac::master(c.s))) return Answer::rs;
     return c.s.last_answer == Answer::response ? Answer::kept : c.s.last_answer;

@@ -237,5 +237,16 @@ TEST_P(Checks, C070_the_default_address_126_is_changed_by_Set_Slave_Add) {
     EXPECT_EQ(b.ask(kFdlStatus), kFdlStatusOk);
 }
 
+// proves: E082
+TEST_P(ChecksStepBC, Set_Ext_Prm_is_answered_RS_from_the_first_Chk_Cfg_on_whoever_sends_it) {
+    Recipe r = recipe();
+    r.mode0 |= 0x0800;  // Set_Ext_Prm_Supported
+    Bench b{r, Stage::p1};
+    EXPECT_EQ(b.ask("68 0A 0A 68 88 83 6D 35 3E 05 81 00 00 AA 1B 16"), kSc) << "another master, ignored";
+    EXPECT_EQ(b.ask(kCfg), kSc);
+    EXPECT_EQ(b.ask("68 0A 0A 68 88 83 5D 35 3E 05 81 00 00 AA 0B 16"), "10 03 08 03 0E 16");
+    EXPECT_EQ(b.ask("68 0A 0A 68 88 82 7D 35 3E 05 81 00 00 AA 2A 16"), kRs);
+}
+
 }  // namespace
 }  // namespace dpchip::checks

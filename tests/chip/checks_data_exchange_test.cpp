@@ -175,5 +175,16 @@ TEST_P(Checks, a_repetition_on_a_SAP_that_is_not_enabled_any_more_is_answered_RS
     EXPECT_EQ(b.ask_again(), kRs);
 }
 
+// proves: E079
+TEST_P(Checks, a_repeated_RD_Input_without_inputs_is_RS_too_once_DATA_EXCH_is_left) {
+    Recipe r = recipe();
+    r.din = 0;
+    Bench b{r, Stage::p2};
+    EXPECT_EQ(b.ask("68 05 05 68 88 82 5D 38 3E DD 16"), kSc);
+    EXPECT_EQ(b.ask_again(), kSc);
+    b.write(control::mode_reg1_s, 0x08);  // User_LEAVE-MASTER
+    EXPECT_EQ(b.ask_again(), kRs);
+}
+
 }  // namespace
 }  // namespace dpchip::checks

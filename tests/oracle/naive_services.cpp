@@ -162,9 +162,6 @@ void NaiveSlave::compose() {
         o.push_back(octet(sum));
         o.push_back(0x16);
     }
-    // 2.5: SC stays SC. A Data_Exchange without inputs is still a service of DATA-EXCH.
-    const bool read = plan.reply == Reply::rd_input || plan.reply == Reply::rd_output;
-    if (o[0] == 0xE5 && read && !plan.retry && fcb_reply == plan.reply) fcb_reply = Reply::sc;
     plan.end = plan.start + 11 * static_cast<Time>(o.size()) * plan.bit;
 }
 
