@@ -45,7 +45,8 @@ enum {
     DPCHIP_E_SPACE = -6,     /* the caller's buffer is too small */
     DPCHIP_E_SNAPSHOT = -7,  /* not a snapshot of this chip */
     DPCHIP_E_FILE = -8,      /* a file cannot be written */
-    DPCHIP_E_INTERNAL = -9   /* a defect of the library */
+    DPCHIP_E_INTERNAL = -9,  /* a defect of the library */
+    DPCHIP_E_VIOLATION = -10 /* dpchip_pins.h: bus timing was violated and that is fatal */
 };
 
 /* Data format of the processor, pin XINT/MOT. */
