@@ -125,7 +125,7 @@ void act(C& c, Action action) {
 
 template <class C>
 void dispatch(C& c, Event event) {
-    const int row = kTable[static_cast<std::size_t>(c.s.cs_state)][static_cast<std::size_t>(event)];
+    const std::int8_t row = kTable[static_cast<std::size_t>(c.s.cs_state)][static_cast<std::size_t>(event)];
     if (row == kIgnoredPair) return;
     c.s.cs_state = kRows[row].to;
     act(c, kRows[row].action);

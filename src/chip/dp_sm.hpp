@@ -82,7 +82,7 @@ void leave_actions(C& c) {
 
 template <class C>
 void dispatch(C& c, Event event) {
-    const int row = kTable[static_cast<std::size_t>(c.s.dp_state)][static_cast<std::size_t>(event)];
+    const std::int8_t row = kTable[static_cast<std::size_t>(c.s.dp_state)][static_cast<std::size_t>(event)];
     if (row == kIgnoredPair) return;
     switch (kRows[row].action) {
     case Action::none: set_state(c, kRows[row].to); break;

@@ -121,7 +121,7 @@ void act(C& c, Action action) {
 /// Changes the state, then does what the row says. The LEAVE-MASTER of a master timeout is the DP_SM's business.
 template <class C>
 void dispatch(C& c, Event event) {
-    const int row = kTable[static_cast<std::size_t>(c.s.wd_state)][static_cast<std::size_t>(event)];
+    const std::int8_t row = kTable[static_cast<std::size_t>(c.s.wd_state)][static_cast<std::size_t>(event)];
     if (row == kIgnoredPair) return;
     change(c, Fact::wd_state, c.s.wd_state, kRows[row].to);
     act(c, kRows[row].action);

@@ -23,6 +23,7 @@ inline constexpr std::uint8_t kMaxConnections = dp::kLastMs2Sap + 1;
 
 /// The users of the SAP list; connection n is connection0 + n.
 namespace channel {
+// NOLINTNEXTLINE(readability-identifier-naming): words, like the registers'
 inline constexpr std::uint8_t ms1 = 0, alarm = 1, resource_manager = 2, connection0 = 3;
 }
 

@@ -22,6 +22,7 @@ concept BusPort = requires(B& b, std::uint16_t a, std::uint8_t d, std::span<std:
 /// A chip that the processor sees at a fixed address, one octet an address.
 class MemoryMappedBus {
 public:
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): an address is what the hardware gives
     explicit MemoryMappedBus(std::uintptr_t base) : base_{reinterpret_cast<volatile std::uint8_t*>(base)} {}
 
     std::uint8_t read(std::uint16_t address) const { return base_[address]; }
