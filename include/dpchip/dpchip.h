@@ -81,6 +81,28 @@ DPCHIP_API uint8_t dpchip_chip_peek(const dpchip_chip *chip, uint16_t address);
 /* 1 while X/INT is active, whatever its polarity. */
 DPCHIP_API int dpchip_chip_interrupt(const dpchip_chip *chip);
 
+/* Output pins that follow from what the chip does; the whole package is in dpchip_pins.h. */
+enum { DPCHIP_OUT_X_INT = 0, DPCHIP_OUT_RTS = 1, DPCHIP_OUT_XDATAEXCH_SYNC = 2 };
+/* The level of an output now: 0, 1, or a negative code. */
+DPCHIP_API int dpchip_chip_level(const dpchip_chip *chip, int output);
+/* An output changed. */
+typedef struct dpchip_edge {
+    int64_t ticks;   /* when, in the time of dpchip_chip_now_ticks */
+    int32_t output;  /* DPCHIP_OUT_... */
+    int32_t level;   /* from then on */
+} dpchip_edge;
+/* 1: edges of the outputs are kept from now on; 0: no longer. After dpchip_chip_load ask for the levels. */
+DPCHIP_API int dpchip_chip_watch(dpchip_chip *chip, int on);
+/* Takes the oldest edge. 1: one was taken; 0: there is none. 1024 are kept; when more come, the oldest are lost. */
+DPCHIP_API int dpchip_chip_edge(dpchip_chip *chip, dpchip_edge *edge);
+
+/* The chip's present in ticks of 1/60 ns: its line's time, or its own when it is on no line. */
+DPCHIP_API int64_t dpchip_chip_now_ticks(const dpchip_chip *chip);
+/* When the chip does something by itself next, in that time; INT64_MAX: nothing is planned. */
+DPCHIP_API int64_t dpchip_chip_next_ticks(const dpchip_chip *chip);
+/* Lets time pass for a chip that is on no line. */
+DPCHIP_API int dpchip_chip_run_ticks(dpchip_chip *chip, int64_t ticks);
+
 /* Options by name, before or after attaching: "dpchip serve --show-options" lists them.
    Example: "baud_probe_ms", "1" shortens the baud rate search. */
 DPCHIP_API int dpchip_chip_set_option(dpchip_chip *chip, const char *name, const char *text);
@@ -145,6 +167,27 @@ DPCHIP_API void dpchip_line_stop(dpchip_line *line);
 DPCHIP_API int dpchip_line_send(dpchip_line *line, const void *bytes, size_t n);
 /* Runs the line until a station's telegram has ended: its length, copied as far as it fits. 0: the time is over. */
 DPCHIP_API int dpchip_line_receive(dpchip_line *line, void *bytes, size_t capacity, int64_t timeout_ns);
+
+/* The same without waiting, for a caller with a clock of its own: the octets begin at line time `at_ticks` exactly, whatever
+   the rules say (a time that has passed means now), or at the earliest moment that the rules allow when it is negative.
+   DPCHIP_E_STATE while the octets before are on their way. */
+DPCHIP_API int dpchip_line_post(dpchip_line *line, const void *bytes, size_t n, int64_t at_ticks);
+
+/* What was on the line. Set `size` to sizeof(dpchip_telegram) before the call. */
+typedef struct dpchip_telegram {
+    size_t size;
+    int64_t start_ticks;   /* first start bit, in line time */
+    int64_t end_ticks;     /* end of the last stop bit */
+    int32_t own;           /* 1: from dpchip_line_send or dpchip_line_post, or from the port of a live line */
+    int32_t damaged;       /* 1: not what its sender meant, or not a telegram */
+    uint16_t length;
+    uint8_t octets[255];   /* as they arrived */
+} dpchip_telegram;
+/* 1: telegrams of all stations are kept from now on; 0: no longer. */
+DPCHIP_API int dpchip_line_watch(dpchip_line *line, int on);
+/* Takes the oldest telegram that has ended. 1: one was taken; 0: there is none. 1024 are kept; when more come, the oldest
+   are lost. */
+DPCHIP_API int dpchip_line_telegram(dpchip_line *line, dpchip_telegram *telegram);
 
 /* Records all telegrams from now on into a pcapng file that Wireshark opens; NULL ends the recording. */
 DPCHIP_API int dpchip_line_record(dpchip_line *line, const char *path);

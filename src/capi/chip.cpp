@@ -4,7 +4,9 @@
 
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "error.hpp"
@@ -15,12 +17,52 @@ using dpchip::core::Ticks;
 
 namespace regmap = dpchip::regmap;
 
-void dpchip_chip::watch_x_int() {
-    auto& edges = model.edges();
-    while (!edges.empty()) {
-        const bool high = edges.pop().level == dpchip::chip::Level::high;
+namespace {
+
+using dpchip::chip::Pin;
+
+constexpr std::size_t kMaxEdges = 1024;
+
+constexpr unsigned mask(Pin pin) { return 1u << static_cast<unsigned>(pin); }
+
+/// The pin of a DPCHIP_OUT_ number, or nothing.
+std::optional<Pin> output_pin(int output) {
+    switch (output) {
+    case DPCHIP_OUT_X_INT: return Pin::x_int;
+    case DPCHIP_OUT_RTS: return Pin::rts;
+    case DPCHIP_OUT_XDATAEXCH_SYNC: return Pin::xdataexch_sync;
+    default: return std::nullopt;
+    }
+}
+
+std::int32_t output_number(Pin pin) {
+    switch (pin) {
+    case Pin::x_int: return DPCHIP_OUT_X_INT;
+    case Pin::rts: return DPCHIP_OUT_RTS;
+    case Pin::xdataexch_sync: return DPCHIP_OUT_XDATAEXCH_SYNC;
+    }
+    return DPCHIP_E_INTERNAL;
+}
+
+}  // namespace
+
+void dpchip_chip::watch(bool on) {
+    drain_edges();
+    watched = on;
+    if (!on) edges.clear();
+    model.watch(static_cast<std::uint8_t>(mask(Pin::x_int) | (on ? mask(Pin::rts) | mask(Pin::xdataexch_sync) : 0u)));
+}
+
+void dpchip_chip::drain_edges() {
+    auto& queue = model.edges();
+    while (!queue.empty()) {
+        const dpchip::chip::Edge edge = queue.pop();
+        const bool high = edge.level == dpchip::chip::Level::high;
         const bool active_high = (model.state().mode0 & regmap::mode0::int_pol) != 0;
-        if (high == active_high) x_int_rose = true;
+        if (edge.pin == Pin::x_int && high == active_high) x_int_rose = true;
+        if (!watched) continue;
+        if (edges.size() == kMaxEdges) edges.pop_front();
+        edges.push_back({attachment.outside(edge.at).n, output_number(edge.pin), high ? 1 : 0});
     }
 }
 
@@ -34,7 +76,7 @@ void dpchip_chip::before_access(Ticks duration) {
 }
 
 void dpchip_chip::after_access() {
-    watch_x_int();
+    drain_edges();
     if (line != nullptr) line->segment().touch(index);
 }
 
@@ -143,6 +185,54 @@ uint8_t dpchip_chip_peek(const dpchip_chip* chip, uint16_t address) { return chi
 
 int dpchip_chip_interrupt(const dpchip_chip* chip) { return chip != nullptr && chip->model.interrupt_active() ? 1 : 0; }
 
+int dpchip_chip_level(const dpchip_chip* chip, int output) {
+    if (chip == nullptr) return null_chip();
+    const auto pin = output_pin(output);
+    if (!pin) return fail(DPCHIP_E_ARGUMENT, "the outputs are DPCHIP_OUT_X_INT, DPCHIP_OUT_RTS and DPCHIP_OUT_XDATAEXCH_SYNC");
+    return chip->model.level(*pin) == dpchip::chip::Level::high ? 1 : 0;
+}
+
+int dpchip_chip_watch(dpchip_chip* chip, int on) {
+    if (chip == nullptr) return null_chip();
+    return guarded([&] {
+        chip->watch(on != 0);
+        return DPCHIP_OK;
+    });
+}
+
+int dpchip_chip_edge(dpchip_chip* chip, dpchip_edge* edge) {
+    if (chip == nullptr || edge == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    if (chip->edges.empty()) return 0;
+    *edge = chip->edges.front();
+    chip->edges.pop_front();
+    return 1;
+}
+
+int64_t dpchip_chip_now_ticks(const dpchip_chip* chip) {
+    if (chip == nullptr) return 0;
+    return chip->line != nullptr ? chip->line->now().n : chip->attachment.outside(chip->model.now()).n;
+}
+
+int64_t dpchip_chip_next_ticks(const dpchip_chip* chip) {
+    return chip == nullptr ? std::numeric_limits<std::int64_t>::max() : chip->attachment.next().n;
+}
+
+int dpchip_chip_run_ticks(dpchip_chip* chip, int64_t ticks) {
+    if (chip == nullptr) return null_chip();
+    if (chip->line != nullptr) return fail(DPCHIP_E_STATE, "the chip's time is its line's: dpchip_line_run_ticks");
+    if (ticks < 0 || chip->model.now().n > dpchip::core::kNever.n / 2 - ticks) return fail(DPCHIP_E_ARGUMENT, "time cannot pass so far");
+    return guarded([&] {
+        const Ticks end = chip->model.now() + Ticks{ticks};
+        while (chip->model.next() < end) {
+            chip->model.advance(std::max(chip->model.next(), chip->model.now()));
+            chip->drain_edges();
+        }
+        chip->model.advance(end);
+        chip->drain_edges();
+        return DPCHIP_OK;
+    });
+}
+
 int dpchip_chip_set_option(dpchip_chip* chip, const char* name, const char* text) {
     if (chip == nullptr || name == nullptr || text == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
     return guarded([&] {
@@ -215,6 +305,7 @@ int dpchip_chip_load(dpchip_chip* chip, const void* bytes, size_t size) {
         if (error != dpchip::core::ArchiveError::none)
             return fail(DPCHIP_E_SNAPSHOT, "not a snapshot of this chip and version (reason " + std::to_string(static_cast<int>(error)) + ")");
         if (chip->line != nullptr) chip->attachment.set_offset(chip->model.now() - chip->line->now());
+        chip->watch(chip->watched);  // what is watched is part of a snapshot
         chip->after_access();
         return static_cast<int>(DPCHIP_OK);
     });

@@ -2,6 +2,8 @@
 // What stands behind a dpchip_chip: the model, and its place on a line.
 #pragma once
 
+#include <deque>
+
 #include <dpchip/chip/chip.hpp>
 #include <dpchip/dpchip.h>
 #include <dpchip/segment/station.hpp>
@@ -18,8 +20,10 @@ public:
     explicit Attachment(Model& model) : model_{&model} {}
 
     void set_offset(Ticks chip_minus_line) { offset_ = chip_minus_line; }
+    /// The chip's time as its line, or whoever moves a chip without one, counts it.
+    Ticks outside(Ticks chip) const { return chip == core::kNever ? core::kNever : chip - offset_; }
 
-    Ticks next() const { return model_->next() == core::kNever ? core::kNever : model_->next() - offset_; }
+    Ticks next() const { return outside(model_->next()); }
     void advance(Ticks t) { model_->advance(t + offset_); }
     void hear(const segment::Transmission& t) {
         if (offset_ == Ticks{}) return model_->hear(t);
@@ -48,9 +52,7 @@ private:
 }  // namespace dpchip::capi
 
 struct dpchip_chip {
-    explicit dpchip_chip(dpchip::regmap::Variant variant) : model{variant}, attachment{model} {
-        model.watch(1u << static_cast<unsigned>(dpchip::chip::Pin::x_int));
-    }
+    explicit dpchip_chip(dpchip::regmap::Variant variant) : model{variant}, attachment{model} { watch(false); }
     dpchip_chip(const dpchip_chip&) = delete;
     dpchip_chip& operator=(const dpchip_chip&) = delete;
 
@@ -60,11 +62,15 @@ struct dpchip_chip {
     dpchip::segment::StationIndex index{};
     dpchip::core::Ticks access_time = dpchip::core::nanoseconds(125);
     bool x_int_rose = false;
+    bool watched = false;           ///< edges are kept for dpchip_chip_edge
+    std::deque<dpchip_edge> edges;
 
+    /// Every output's edges, or only what dpchip_line_run needs.
+    void watch(bool on);
     /// Brings the chip to the present of its line, after an access time if there is one.
     void before_access(dpchip::core::Ticks duration);
     /// The processor has done something: the line must look again.
     void after_access();
-    /// Notes rising X/INT.
-    void watch_x_int();
+    /// Empties the model's queue of edges: notes rising X/INT, keeps edges for who watches.
+    void drain_edges();
 };

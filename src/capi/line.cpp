@@ -2,6 +2,7 @@
 // Lines of the C API: virtual time on "sim:", the wall clock on all others.
 #include "line.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <dpchip/live/open_line.hpp>
@@ -53,6 +54,14 @@ public:
         segment_.settle();
         return t.length;
     }
+    int post(std::span<const std::uint8_t> octets, Ticks at) override {
+        segment_.settle();
+        const bool taken = at < Ticks{} ? port_.send(octets) : port_.send_at(std::max(at, segment_.now()), octets);
+        if (!taken) return fail(DPCHIP_E_STATE, "the octets before are still on their way");
+        segment_.touch(port_index_);
+        return DPCHIP_OK;
+    }
+    segment::StationIndex outside() const override { return port_index_; }
 
 private:
     segment::Segment segment_;
@@ -80,6 +89,8 @@ public:
     }
     int send(std::span<const std::uint8_t>) override { return only_sim(); }
     int receive(std::span<std::uint8_t>, Ticks) override { return only_sim(); }
+    int post(std::span<const std::uint8_t>, Ticks) override { return only_sim(); }
+    segment::StationIndex outside() const override { return port(); }
 
 private:
     /// OpenLine with the const views that this class needs.
@@ -105,7 +116,7 @@ private:
 bool Line::x_int_rose() {
     bool rose = false;
     for (dpchip_chip* chip : chips) {
-        chip->watch_x_int();
+        chip->drain_edges();
         rose = rose || chip->x_int_rose;
     }
     return rose;
@@ -129,6 +140,36 @@ void Line::end_recording() {
     if (recording_ == nullptr) return;
     segment().unobserve(&*recording_->recorder);
     recording_.reset();
+}
+
+void Line::Watch::see(const segment::Sighting& s) {
+    constexpr std::size_t kMaxTelegrams = 1024;
+    if (telegrams.size() == kMaxTelegrams) telegrams.pop_front();
+    dpchip_telegram& t = telegrams.emplace_back();
+    t.start_ticks = s.sent.start.n;
+    t.end_ticks = s.sent.end().n;
+    t.own = s.sender == own ? 1 : 0;
+    t.damaged = s.sent.damaged ? 1 : 0;
+    t.length = s.sent.length;
+    std::ranges::copy(s.sent.bytes(), t.octets);
+}
+
+void Line::watch(bool on) {
+    if (on == (watch_ != nullptr)) return;
+    if (on) {
+        watch_ = std::make_unique<Watch>(Watch{outside()});
+        segment().observe(*watch_);
+    } else {
+        segment().unobserve(watch_.get());
+        watch_.reset();
+    }
+}
+
+std::optional<dpchip_telegram> Line::seen() {
+    if (watch_ == nullptr || watch_->telegrams.empty()) return std::nullopt;
+    const dpchip_telegram t = watch_->telegrams.front();
+    watch_->telegrams.pop_front();
+    return t;
 }
 
 std::unique_ptr<Line> open(std::string_view uri, std::uint32_t baud) {

@@ -2,6 +2,7 @@
 // What stands behind a dpchip_line: a segment, and a way to let time pass on it. Virtual or live.
 #pragma once
 
+#include <deque>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -37,12 +38,22 @@ public:
     /// The test as a master. Codes as in the C API.
     virtual int send(std::span<const std::uint8_t> octets) = 0;
     virtual int receive(std::span<std::uint8_t> into, Ticks timeout) = 0;
+    /// Plans octets for `at`, or for the earliest moment of the bus rules when that is negative.
+    virtual int post(std::span<const std::uint8_t> octets, Ticks at) = 0;
     virtual std::int64_t epoch_ns() const { return 0; }
+    /// The station through which the outside is on the line, when it is someone else's.
     virtual segment::StationIndex port() const { return segment::kNobody; }
+    /// The station whose telegrams are the caller's own, or come from the port.
+    virtual segment::StationIndex outside() const = 0;
     virtual bool is_virtual() const = 0;
 
     void record(const std::string& file);
     void end_recording();
+
+    /// Keeps every telegram for dpchip_line_telegram.
+    void watch(bool on);
+    /// The oldest one kept, or nothing.
+    std::optional<dpchip_telegram> seen();
 
     std::vector<dpchip_chip*> chips;
 
@@ -56,7 +67,14 @@ private:
         std::optional<trace::PcapngWriter> writer;
         std::optional<live::Recorder> recorder;
     };
+    /// What was on the line, for dpchip_line_telegram.
+    struct Watch {
+        segment::StationIndex own;
+        std::deque<dpchip_telegram> telegrams{};
+        void see(const segment::Sighting& s);
+    };
     std::unique_ptr<Recording> recording_;
+    std::unique_ptr<Watch> watch_;
 };
 
 /// Throws std::invalid_argument or live::LineError in words. baud 0: the default.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // dpchip_line_*: the line behind the C API.
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -34,7 +35,7 @@ void forget_rises(dpchip::capi::Line& line) {
 Ticks run(dpchip::capi::Line& line, Ticks duration) {
     const Ticks passed = line.run(std::max(Ticks{}, bounded(line, duration)));
     line.segment().settle();
-    for (dpchip_chip* chip : line.chips) chip->watch_x_int();
+    for (dpchip_chip* chip : line.chips) chip->drain_edges();
     forget_rises(line);
     return passed;
 }
@@ -80,6 +81,7 @@ void dpchip_line_close(dpchip_line* line) {
     guarded([&] {
         while (!line->line->chips.empty()) take_off(*line->line, *line->line->chips.back());
         line->line->end_recording();
+        line->line->watch(false);
         return 0;
     });
     delete line;
@@ -138,6 +140,32 @@ int dpchip_line_send(dpchip_line* line, const void* bytes, size_t n) {
 int dpchip_line_receive(dpchip_line* line, void* bytes, size_t capacity, int64_t timeout_ns) {
     if (line == nullptr || (bytes == nullptr && capacity != 0)) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
     return guarded([&] { return line->line->receive({static_cast<std::uint8_t*>(bytes), capacity}, duration_ns(timeout_ns)); });
+}
+
+int dpchip_line_post(dpchip_line* line, const void* bytes, size_t n, int64_t at_ticks) {
+    if (line == nullptr || bytes == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    if (n < 1 || n > dpchip::fdl::kMaxTelegram) return fail(DPCHIP_E_ARGUMENT, "a telegram has 1 to 255 octets");
+    return guarded([&] { return line->line->post({static_cast<const std::uint8_t*>(bytes), n}, Ticks{at_ticks}); });
+}
+
+int dpchip_line_watch(dpchip_line* line, int on) {
+    if (line == nullptr) return null_line();
+    return guarded([&] {
+        line->line->watch(on != 0);
+        return DPCHIP_OK;
+    });
+}
+
+int dpchip_line_telegram(dpchip_line* line, dpchip_telegram* telegram) {
+    if (line == nullptr || telegram == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    if (telegram->size < sizeof(size_t)) return fail(DPCHIP_E_ARGUMENT, "dpchip_telegram.size is not set");
+    return guarded([&] {
+        auto seen = line->line->seen();
+        if (!seen) return 0;
+        seen->size = telegram->size;
+        std::memcpy(telegram, &*seen, std::min(telegram->size, sizeof *seen));
+        return 1;
+    });
 }
 
 int dpchip_line_record(dpchip_line* line, const char* path) {
