@@ -54,6 +54,7 @@ ServeProcess::ServeProcess(const std::vector<std::string>& arguments) {
     std::vector<std::string> all{"dpchip", "serve"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
+    argv.reserve(all.size() + 1);
     for (std::string& a : all) argv.push_back(a.data());
     argv.push_back(nullptr);
     const pid_t parent = ::getpid();
