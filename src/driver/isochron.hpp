@@ -37,7 +37,7 @@ void write_isochron(Bus& bus, const IsochronConfig& c) {
 /// What the SYNCH telegrams are worth, from the times at which they came. Any unit that is fine enough, the same for all.
 class SynchMeter {
 public:
-    /// The cycle that is expected, and how far from it a SYNCH may come and still count as in time.
+    /// The cycle that is expected, and how far from it a SYNCH may come and still count as in time. Before, all are in time.
     void expect(std::uint64_t cycle, std::uint64_t window) { *this = {}; cycle_ = cycle; window_ = window; }
 
     /// A SYNCH came at `now`; true when it came in time, or is the first one.
@@ -46,9 +46,10 @@ public:
         const std::uint64_t period = now - last_;
         last_ = now;
         if (first) return true;
-        if (period > cycle_ + cycle_ / 2) return ++missing_, false;
+        if (cycle_ != 0 && period > cycle_ + cycle_ / 2) return ++missing_, false;
         if (period < shortest_) shortest_ = period;
         if (period > longest_) longest_ = period;
+        if (cycle_ == 0) return true;
         const std::uint64_t off = period > cycle_ ? period - cycle_ : cycle_ - period;
         if (off > window_) return ++late_, false;
         return true;

@@ -3,7 +3,7 @@
 // reference 6.3). Stands beside Vpc3 as DxbSubscriber does, with own_interrupts() = kInterrupts and more_mode0() = kMode0.
 // MAC_Reset does not exist then: Offline is noticed by poll().
 //
-// Not here: the rate of the local clock is not corrected, only its state.
+// Besides the time the rate is corrected: correct_rate(false) leaves the local clock as fast as it is.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 #include <dpchip/core/bits.hpp>
 #include <dpchip/dp/clock.hpp>
 #include <dpchip/driver/bus_port.hpp>
+#include <dpchip/driver/corrected_time.hpp>
 #include <dpchip/driver/layout.hpp>
 #include <dpchip/regmap/address.hpp>
 
@@ -39,9 +40,11 @@ public:
     bool configure(const Layout& layout, BusMode mode) {
         base_ = static_cast<std::uint16_t>(layout.ram_bytes - kRoom);
         acknowledge_ = mode == BusMode::motorola ? regmap::control::int_ack_reg_high : regmap::control::int_ack_reg_low;
-        valid_ = false;
+        time_.reset();
         return layout.used_bytes <= base_;
     }
+    /// Whether the drift of the local clock is learnt and allowed for (it is at first). Costs a few integer operations.
+    void correct_rate(bool on) { time_.correct_rate(on); }
     /// Starts the time receiver as a Time_AR block wants it, within the handling of its Set_Prm. `check_previous`: a
     /// Clock_Value must name the time of the sequence before.
     void start(const dp::TimeAr& t, bool check_previous = false, bool ignore_cyclic = false) {
@@ -66,17 +69,16 @@ public:
     }
 
     /// True once the time was set.
-    bool valid() const { return valid_; }
+    bool valid() const { return time_.valid(); }
     /// The system time at local time `local_ns`, which is not before that of the last setting.
-    dp::NetworkTime now(std::uint64_t local_ns) const {
-        const std::uint64_t ns = local_ns - local_at_;
-        const std::uint64_t s = ns / 1'000'000'000u, rest = ns % 1'000'000'000u;
-        return time_at_.plus({s, static_cast<std::uint32_t>((rest << 32) / 1'000'000'000u)});
-    }
+    dp::NetworkTime now(std::uint64_t local_ns) const { return time_.at(local_ns); }
     /// What came with the last setting: time zone, summer time, whether the time master is synchronised.
     const dp::ClockValue& value() const { return value_; }
     /// How far the local clock was off when it was set last, in ns (new time minus old); 0 at the first setting.
-    std::int64_t correction_ns() const { return correction_; }
+    std::int64_t correction_ns() const { return time_.correction_ns(); }
+    /// By how much the local clock is slow, in parts per billion; known from the second setting on.
+    std::int32_t rate_ppb() const { return time_.rate_ppb(); }
+    bool rate_known() const { return time_.rate_known(); }
 
 private:
     static constexpr std::uint16_t kStatus = 0, kCommand = 1, kCvStatus = 2, kTimeEvent = 4, kDelay = 12, kPrevious = 16, kInterval = 24;
@@ -93,19 +95,14 @@ private:
         bus_.read_block(at(kPrevious), all.subspan(8, 8));
         bus_.read_block(at(kCvStatus), all.subspan(16, 2));
         value_ = *dp::decode_clock_value(octets);
-        const dp::NetworkTime time = value_.time_event.plus(delay_).plus_us(delay_us);
-        correction_ = valid_ ? time.minus_ns(now(local)) : 0;
-        time_at_ = time;
-        local_at_ = local;
-        valid_ = true;
+        // The moment of the Time_Event by the local clock: so the delay is subject to the correction, too.
+        time_.set(value_.time_event.plus(delay_), local - std::uint64_t{delay_us} * 1'000);
     }
 
     Bus bus_;
     std::uint16_t base_ = 0, acknowledge_ = regmap::control::int_ack_reg_low;
-    dp::NetworkTime delay_{}, time_at_{};
-    std::uint64_t local_at_ = 0;
-    std::int64_t correction_ = 0;
-    bool valid_ = false;
+    dp::NetworkTime delay_{};
+    CorrectedTime time_{};
     dp::ClockValue value_{};
 };
 

@@ -20,7 +20,8 @@ const char* name(ConfigError error) {
     case ConfigError::address_taken: return "the address is used twice";
     case ConfigError::too_long: return "too many octets for one telegram";
     case ConfigError::no_cfg: return "there is no configuration octet";
-    case ConfigError::watchdog: return "the watchdog time is too long";
+    case ConfigError::watchdog: return "the watchdog time is too long, or missing where links need one";
+    case ConfigError::block: return "a block of parameters that cannot be, or parameters without Prm_Structure before it";
     }
     return "unknown";
 }

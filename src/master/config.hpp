@@ -86,7 +86,8 @@ enum class ConfigError : std::uint8_t {
     address_taken,  ///< a slave has it already, or the master itself
     too_long,       ///< more than 237 user parameters, 244 cfg octets, inputs or outputs
     no_cfg,         ///< there is no configuration octet
-    watchdog,       ///< longer than the factors can say
+    watchdog,       ///< longer than the factors can say; none, and links that need one
+    block,          ///< a block of parameters that cannot be, or parameters without Prm_Structure before it
 };
 const char* name(ConfigError error);
 

@@ -16,6 +16,10 @@ std::uint16_t VirtualSlave::Firmware::more_mode0() const {
     return slave->plan_.clock ? driver::SlaveClock<Bus>::kMode0 : std::uint16_t{0};
 }
 
+std::uint8_t VirtualSlave::Firmware::more_mode2() const {
+    return slave->plan_.synchronous() ? driver::mode2(slave->plan_.isochron) : std::uint8_t{0};
+}
+
 void VirtualSlave::Firmware::serve_own(std::uint16_t irr) {
     VirtualSlave& s = *slave;
     Dpv2Handler none;
@@ -29,6 +33,7 @@ void VirtualSlave::Firmware::serve_own(std::uint16_t irr) {
         ++s.dpv2_counters_.link_errors;
         handler.link_error();
     }
+    if (mine != 0) s.tell_of_links((mine & regmap::interrupt::dxb_link_error) != 0);
     if (!s.plan_.clock) return;
     const driver::ClockEvent event = s.slave_clock_.serve(irr, [&s] { return s.local_ns(); });
     if (event == driver::ClockEvent::none) return;
@@ -36,11 +41,31 @@ void VirtualSlave::Firmware::serve_own(std::uint16_t irr) {
     handler.clock(event);
 }
 
+/// DXB_Link_Status stands in the diagnosis from the first broken link until all of them are active again. The chip tells
+/// only of the former, so the latter is looked for with the samples. Data_Exist is left out: it changes with every broadcast.
+void VirtualSlave::tell_of_links(bool broken) {
+    if (!broken && !links_told_) return;
+    std::array<std::uint8_t, dp::dxb_status_octets(dp::kMaxDxbLinks)> message{};
+    std::size_t octets = dxb_.status_message(message);
+    bool active = true;
+    for (std::size_t link = 0; link < dxb_.links().size(); ++link) {
+        std::uint8_t& status = message[dp::dxb_status_octets(link) + 1];
+        status = static_cast<std::uint8_t>(status & ~dp::kDataExist);
+        active = active && (status & dp::kLinkStatus) != 0;
+    }
+    links_told_ = !active;
+    if (active) octets = 0;
+    if (ext_diag_.set(ExtDiag::Part::links, std::span{message}.first(octets))) static_cast<void>(hand_over_diagnosis());
+}
+
 /// A DP-V1 slave whose GSD does not say Publisher_supp refuses to be one.
 driver::Verdict VirtualSlave::Firmware::set_prm(const dp::SetPrm& prm) {
     VirtualSlave& s = *slave;
     if (!s.plan_.dpv2()) return driver::Verdict::accept;
     s.dxb_.forget();
+    s.links_told_ = false;
+    const bool links_gone = s.ext_diag_.set(ExtDiag::Part::links, {}), command_gone = s.ext_diag_.set(ExtDiag::Part::redundancy, {});
+    if (links_gone || command_gone) static_cast<void>(s.hand_over_diagnosis());
     s.wd_on_ = prm.wd_on();
     const bool publisher_refused = (prm.dpv1_status_1() & dp::kPublisherEnable) != 0 && !s.plan_.publisher;
     const bool structured = (prm.dpv1_status_3() & dp::kPrmStructure) != 0;
@@ -81,15 +106,16 @@ void VirtualSlave::obey(const dp::PrmCmd& command) {
     const dp::RedStatus status = redundancy_.command(command);
     ++dpv2_counters_.prm_cmds;
     std::array<std::uint8_t, dp::kRedStatus> block{};
-    if (dp::encode(status, block)) static_cast<void>(driver_.set_diagnosis(block));
+    if (dp::encode(status, block) && ext_diag_.set(ExtDiag::Part::redundancy, block)) static_cast<void>(hand_over_diagnosis());
     if (dpv2_handler_ != nullptr) dpv2_handler_->redundancy(status);
 }
 
-/// SYNC pulses since the last look.
+/// Beginnings of SYNC pulses since the last look; in Simple Sync Mode the pin shows a DX_Out.
 void VirtualSlave::look_at_sync() {
+    const chip::Level active = plan_.isochron.sync_pol ? chip::Level::high : chip::Level::low;
     while (!chip_.edges().empty()) {
         const chip::Edge edge = chip_.edges().pop();
-        if (edge.pin != chip::Pin::xdataexch_sync || edge.level != chip::Level::low) continue;
+        if (edge.pin != chip::Pin::xdataexch_sync || edge.level != active) continue;
         ++dpv2_counters_.synchs;
         static_cast<void>(synch_meter_.observe(static_cast<std::uint64_t>(edge.at.n)));
         if (dpv2_handler_ != nullptr) dpv2_handler_->synch(edge.at);
@@ -99,17 +125,18 @@ void VirtualSlave::look_at_sync() {
 /// After the driver is configured, before it starts. False when the RAM does not hold it.
 bool VirtualSlave::configure_dpv2() {
     const StationPlan& p = plan_;
+    if (p.synchronous()) {
+        Bus bus{&chip_};
+        driver::write_isochron(bus, p.isochron);
+        chip_.watch(1u << static_cast<unsigned>(chip::Pin::xdataexch_sync));
+    }
     if (!p.dpv2()) return true;
+    slave_clock_.correct_rate(p.clock_rate);
     const driver::Layout& l = driver_.layout();
     const std::uint16_t first = driver_.dpv1().layout().used_bytes;
     const auto end = static_cast<std::uint16_t>(l.ram_bytes - (p.clock ? driver::SlaveClock<Bus>::kRoom : 0));
     if (!dxb_.configure(p.dxb, l, first, end)) return false;
     if (p.clock && !(slave_clock_.configure(l, p.driver.bus_mode) && first <= end)) return false;
-    if (p.driver.sync_ena) {
-        Bus bus{&chip_};
-        driver::write_isochron(bus, {});
-        chip_.watch(1u << static_cast<unsigned>(chip::Pin::xdataexch_sync));
-    }
     return true;
 }
 

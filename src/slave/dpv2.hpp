@@ -21,7 +21,8 @@ public:
     virtual void sample(const driver::DxbSample&) {}
     /// A link broke: at least one of them.
     virtual void link_error() {}
-    /// A SYNC pulse began at `local`, by the station's own crystal.
+    /// A SYNC pulse began at `local`, by the station's own crystal (VirtualSlave::crystal()); in Simple Sync Mode: a SYNCH
+    /// let outputs through.
     virtual void synch(core::Ticks /*local*/) {}
     virtual void clock(driver::ClockEvent) {}
     /// A PrmCmd was obeyed; this is the acknowledgement that went into the diagnosis.
@@ -30,7 +31,7 @@ public:
 
 struct Dpv2Counters {
     std::uint64_t samples{}, link_errors{};
-    std::uint64_t synchs{};
+    std::uint64_t synchs{};          ///< SYNC pulses
     std::uint64_t times_set{}, clock_violations{};
     std::uint64_t prm_cmds{};
     std::uint64_t blocks_refused{};  ///< Set_Prm and Set_Ext_Prm refused for a block of theirs

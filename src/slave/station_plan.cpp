@@ -37,6 +37,14 @@ void check_address(const gsd::Gsd& gsd, const SlaveSetup& setup) {
                              " does not know Set_Slave_Add (Set_Slave_Add_supp = 0)"};
 }
 
+/// DX_Int_Port means nothing while SYNC_Ena is set (5.1.3).
+void check_simple_sync(const regmap::Traits& chip, bool sync_ena) {
+    if (!chip.isom) throw SlaveError{SlaveError::Kind::chip, std::string{chip.name} + " does not know Simple Sync Mode"};
+    if (sync_ena)
+        throw SlaveError{SlaveError::Kind::chip, "Simple Sync Mode is for stations without Isochron Mode, and this one has it (Isochron_Mode_supp, "
+                                                 "or user parameters in the place of IsoM_Req)"};
+}
+
 /// With Spec_Clear_Mode the chip refuses a Set_Prm that enables DP-V1 without Fail_Safe (7.1). Files exist that promise
 /// Fail_Safe and give just such parameters as their default: their own parameters must do, so the mode stays off.
 bool accepts_fail_safe(const gsd::Gsd& gsd, const OwnedPrmRules& prm) {
@@ -207,6 +215,9 @@ StationPlan::StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup) {
         c.prm_cmd_supported = gsd.dpv2.prm_cmd || (!gsd.dpv1.slave && (octet_9 & dp::kPrmCmd) != 0);
         c.sync_ena = gsd.dpv2.isochron_mode || (!gsd.dpv1.slave && (octet_9 & dp::kIsoMReq) != 0);
     }
+    isochron = setup.isochron;
+    clock_rate = setup.clock_rate;
+    if (isochron.simple_sync) check_simple_sync(t, c.sync_ena);
     if (gsd.dpv2.x_prm_sap && t.ext_prm) {
         ext_prm = OwnedPrmRules{gsd, configuration, true};
         c.set_ext_prm = true;

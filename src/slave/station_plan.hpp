@@ -11,6 +11,7 @@
 #include <dpchip/core/clock.hpp>
 #include <dpchip/driver/config.hpp>
 #include <dpchip/driver/dxb_subscriber.hpp>
+#include <dpchip/driver/isochron.hpp>
 #include <dpchip/gsd/configuration.hpp>
 #include <dpchip/gsd/gsd.hpp>
 #include <dpchip/regmap/options.hpp>
@@ -34,6 +35,9 @@ struct SlaveSetup {
     core::Clock clock{};                                 ///< the crystal against line time
     core::Ticks firmware_delay{};                        ///< from X/INT to the interrupt routine
     std::uint16_t user_watchdog = 0;                     ///< R_User_WD_Value; 0: off
+    driver::IsochronConfig isochron{};                   ///< what is a SYNCH, and the SYNC pin. Simple Sync Mode is the user's
+                                                         ///< choice; Isochron Mode comes with Isochron_Mode_supp
+    bool clock_rate = true;                              ///< Time_Sync_supp: the crystal's drift is learnt and allowed for
     std::vector<Record> records{};                       ///< DP-V1
     std::optional<Identification> identification{};      ///< I&M; else from the GSD, and only when that says so
     std::optional<std::uint8_t> connections{};           ///< class-2; else as many as the GSD says and the RAM holds
@@ -72,8 +76,14 @@ struct StationPlan {
     driver::DxbConfig dxb{};      ///< Subscriber_supp
     bool publisher = false;       ///< Publisher_supp
     bool clock = false;           ///< Time_Sync_supp
+    bool clock_rate = true;
+    driver::IsochronConfig isochron{};
     bool blocks = false;          ///< blocks of DP-V2 are looked for in the parameters: a DP-V1 slave that knows any of them
     bool dpv2() const { return blocks; }
+    /// Isochron Mode or Simple Sync Mode.
+    bool synchronous() const { return driver.sync_ena || isochron.simple_sync; }
+    /// Octets of Ext_Diag_Data beside alarms.
+    std::size_t diag_room() const { return std::size_t{driver.max_diag} - 6u - driver.dpv1.max_alarm; }
     /// Those of ext_prm; blocks of DP-V2 may follow what the GSD describes.
     driver::PrmRules ext_prm_rules() const;
 

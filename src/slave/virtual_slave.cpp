@@ -14,7 +14,7 @@ VirtualSlave::VirtualSlave(const gsd::Gsd& gsd, const SlaveSetup& setup)
       firmware_delay_{setup.firmware_delay}, line_now_{setup.clock.line(Ticks{0})},
       drifts_{setup.clock.ppb() != 0 || setup.clock.line(Ticks{0}) != Ticks{0}}, records_{setup.records},
       identification_{setup.identification ? *setup.identification : slave::identification(gsd)}, chip_{setup.variant, setup.options},
-      driver_{Bus{&chip_}, firmware_} {
+      driver_{Bus{&chip_}, firmware_}, ext_diag_{plan_.diag_room()} {
     firmware_.slave = this;
     if (io_.held().size() > plan_.configuration.input_octets)
         throw SlaveError{SlaveError::Kind::io_behaviour, "I/O behaviour '" + io_.text() + "': the station has " +
@@ -50,7 +50,7 @@ void VirtualSlave::advance(Ticks to) {
 /// Moves the chip, and lets the firmware run when it is its turn.
 void VirtualSlave::step(Ticks local) {
     chip_.advance(local);
-    if (plan_.driver.sync_ena) look_at_sync();
+    if (plan_.synchronous()) look_at_sync();
     run_firmware_if_due();
 }
 
@@ -114,7 +114,10 @@ void VirtualSlave::set_io(const IoBehaviour& io) {
 }
 
 driver::DiagResult VirtualSlave::set_diagnosis(std::span<const std::uint8_t> ext_diag, driver::DiagFlags flags) {
-    const driver::DiagResult result = driver_.set_diagnosis(ext_diag, flags);
+    if (ext_diag.size() > ext_diag_.room()) return driver::DiagResult::too_long;
+    static_cast<void>(ext_diag_.set(ExtDiag::Part::process, ext_diag));
+    diag_flags_ = flags;
+    const driver::DiagResult result = hand_over_diagnosis();
     run_firmware_if_due();
     return result;
 }

@@ -23,6 +23,7 @@
 #include <dpchip/slave/acyclic.hpp>
 #include <dpchip/slave/dpv2.hpp>
 #include <dpchip/slave/error.hpp>
+#include <dpchip/slave/ext_diag.hpp>
 #include <dpchip/slave/io_behaviour.hpp>
 #include <dpchip/slave/station_plan.hpp>
 
@@ -81,7 +82,8 @@ public:
     bool outputs_valid() const { return outputs_valid_; }
     const IoBehaviour& io() const { return io_; }
     void set_io(const IoBehaviour& io);
-    /// As the driver's set_diagnosis().
+    /// As the driver's set_diagnosis(). Status messages of DP-V2 (redundancy, links) are put behind it as long as they say
+    /// something and there is room.
     driver::DiagResult set_diagnosis(std::span<const std::uint8_t> ext_diag, driver::DiagFlags flags = {});
     // ---- DP-V1, as far as the GSD says so -----------------------------------------------------------------------
     /// An alarm or a status message for the master; `seq_nr` is given by the driver. What clears or updates an alarm is
@@ -112,13 +114,17 @@ public:
     std::span<const dp::DxbLink> links() const { return dxb_.links(); }
     /// Link_Status of link `n` of links(): dp::kLinkStatus and its kind.
     std::uint8_t link_status(std::size_t n) { return dxb_.link_status(n); }
-    /// How regular the SYNC pulses come, in ticks of the station's own crystal.
+    /// How regular the SYNC pulses come, in ticks of the station's own crystal; judged as soon as an IsoM block told the cycle.
     const driver::SynchMeter& synch_meter() const { return synch_meter_; }
     /// The time as the slave has it; nothing before the first Clock_Value. Advance first: it is that of the chip's now().
     std::optional<dp::NetworkTime> time() const {
         if (!plan_.clock || !slave_clock_.valid()) return std::nullopt;
         return slave_clock_.now(local_ns());
     }
+    /// How far the crystal is off as the clock has learnt it from the time master, in parts per billion; 0: not known.
+    std::int32_t clock_rate_ppb() const { return slave_clock_.rate_ppb(); }
+    /// The crystal against line time, for times that the station tells by its own.
+    const core::Clock& crystal() const { return clock_; }
     const driver::RedundantHalf& redundancy() const { return redundancy_; }
 
     /// The user wants new parameters: to WAIT-PRM.
@@ -155,6 +161,7 @@ private:
         driver::Verdict set_prm(const dp::SetPrm& prm);
         std::uint16_t own_interrupts() const;
         std::uint16_t more_mode0() const;
+        std::uint8_t more_mode2() const;
         void serve_own(std::uint16_t irr);
         void prm_refused(driver::PrmFault) { ++slave->counters_.prm_refused; }
         driver::Verdict set_ext_prm(std::span<const std::uint8_t> octets);
@@ -191,6 +198,8 @@ private:
     bool take_blocks(std::span<const std::uint8_t> octets);
     void obey(const dp::PrmCmd& command);
     void look_at_sync();
+    void tell_of_links(bool broken);
+    driver::DiagResult hand_over_diagnosis() { return driver_.set_diagnosis(ext_diag_.all(), diag_flags_); }
     std::uint64_t local_ns() const { return static_cast<std::uint64_t>(core::to_ns(chip_.now())); }
     void count_request(const fdl::Transmission& heard);
     void count_answer(const fdl::Transmission& answer);
@@ -221,6 +230,9 @@ private:
     driver::SlaveClock<Bus> slave_clock_{Bus{&chip_}};
     driver::SynchMeter synch_meter_;
     driver::RedundantHalf redundancy_;
+    bool links_told_ = false;            // DXB_Link_Status stands in the diagnosis
+    ExtDiag ext_diag_;
+    driver::DiagFlags diag_flags_{};     // of the process
     Dpv2Handler* dpv2_handler_ = nullptr;
     Dpv2Counters dpv2_counters_{};
 };

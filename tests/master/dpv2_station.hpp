@@ -27,6 +27,7 @@ struct Dpv2Recipe {
     driver::DxbConfig dxb{};
     bool isochron = false;
     bool clock = false;
+    bool clock_rate = true;      ///< the crystal's drift is learnt
     std::int32_t crystal_ppb = 0;
 };
 
@@ -61,6 +62,7 @@ public:
         const auto end = static_cast<std::uint16_t>(l.ram_bytes - (recipe.clock ? driver::SlaveClock<Bus>::kRoom : 0));
         configured_ = configured_ && dxb_.configure(recipe.dxb, l, l.used_bytes, end);
         if (recipe.clock) configured_ = configured_ && clock_.configure(l, c.bus_mode);
+        clock_.correct_rate(recipe.clock_rate);
         driver::write_isochron(bus_, {});
         if (recipe.isochron) chip_.watch(1u << static_cast<unsigned>(chip::Pin::xdataexch_sync));
         configured_ = configured_ && driver_.start();

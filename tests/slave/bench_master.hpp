@@ -19,7 +19,7 @@ class BenchMaster {
 public:
     VirtualSlave& s;
     Ticks now{};
-    std::uint8_t master = 2, slave, fc = 0x6D;
+    std::uint8_t master = 2, slave, fc = 0x6D, group = 0;
     Ticks bit = fdl::baud(fdl::BaudCode::mbit_1_5).bit;
     Ticks last_answer_start{}, last_request_end{};
 
@@ -31,7 +31,7 @@ public:
     }
     Octets fdl_status() { return send({slave, master, 0x49}, {}); }
     Octets set_prm(const Octets& user = {}) {
-        Octets data{0x88, 2, 50, 11, static_cast<std::uint8_t>(s.ident() >> 8), static_cast<std::uint8_t>(s.ident()), 0};
+        Octets data{0x88, 2, 50, 11, static_cast<std::uint8_t>(s.ident() >> 8), static_cast<std::uint8_t>(s.ident()), group};
         data.insert(data.end(), user.begin(), user.end());
         return request(61, data);
     }

@@ -61,7 +61,8 @@ struct Told : Dpv2Handler {
 };
 
 struct Rig {
-    explicit Rig(const std::string& abilities) : gsd{station(abilities)}, slave{gsd, {.modules = {"2 in, 2 out"}, .address = 8}} {
+    explicit Rig(const std::string& abilities, const driver::IsochronConfig& isochron = {})
+        : gsd{station(abilities)}, slave{gsd, {.modules = {"2 in, 2 out"}, .address = 8, .isochron = isochron}} {
         slave.set_dpv2_handler(&told);
         slave.chip().options().baud_probe_ms.fill(1);
         EXPECT_TRUE(master.find_baud());
@@ -75,6 +76,17 @@ struct Rig {
         master.run(1_ms);
         return slave.dp_state() == chip::DpState::data_exch;
     }
+    /// A second and more of exchanges: the monitoring time of the links is over; `also` happens every 20 ms.
+    template <class F>
+    void monitoring_time(F&& also) {
+        for (int i = 0; i < 52; ++i) {
+            master.exchange({1, 2});
+            also();
+            master.run(20_ms);
+        }
+    }
+    void monitoring_time() { monitoring_time([] {}); }
+    void synch() { master.send({0xFF, 0x82, 0x46}, {0x3A, 0x3E, 0x00, 0x80}); }
     void broadcast(std::uint8_t sa, std::uint8_t fc, const Octets& data) { master.send({0x7F, sa, fc}, data); }
 
     gsd::Gsd gsd;
@@ -98,6 +110,74 @@ TEST(VirtualSlaveDpv2, a_subscriber_takes_links_and_hands_samples_over) {
         r.master.run(20_ms);
     }
     EXPECT_EQ(r.told.broken, 1);
+}
+
+// ---- DXB_Link_Status in the diagnosis -----------------------------------------------------------------------------
+
+const Octets kTwoLinks{13, 3, 0, 0, 1, 9, 4, 1, 2, 10, 1, 0, 1};
+const Octets kNoBlocks{};
+
+/// Ext_Diag_Data.
+Octets ext_diag(Rig& r) {
+    const Octets d = r.master.diag();
+    return d.size() > 6 ? Octets(d.begin() + 6, d.end()) : Octets{};
+}
+
+// proves: VPC3C 7.3.1-06
+TEST(VirtualSlaveDpv2, a_broken_link_stands_in_the_diagnosis_until_all_links_are_active_again) {
+    Rig r{kSubscriber};
+    ASSERT_TRUE(r.bring_up(kTwoLinks));
+    const Octets four{1, 2, 3, 4};
+    const auto both = [&] { r.broadcast(9, 0x08, four), r.broadcast(10, 0x08, {7}); };
+    const auto one = [&] { r.broadcast(9, 0x08, four); };
+    r.monitoring_time(both);
+    EXPECT_EQ(ext_diag(r), kNoBlocks) << "all is well";
+    r.monitoring_time(one);
+    r.monitoring_time(one);
+    EXPECT_EQ(ext_diag(r), (Octets{8, 0x83, 0, 0, 9, 0x80, 10, 0x00})) << "publisher 10 is silent";
+    r.monitoring_time();
+    r.monitoring_time();
+    EXPECT_EQ(ext_diag(r), (Octets{8, 0x83, 0, 0, 9, 0x00, 10, 0x00})) << "and so is 9";
+    r.monitoring_time(one);
+    r.monitoring_time(one);
+    EXPECT_EQ(ext_diag(r), (Octets{8, 0x83, 0, 0, 9, 0x80, 10, 0x00}));
+    r.monitoring_time(both);
+    r.monitoring_time(both);
+    EXPECT_EQ(ext_diag(r), kNoBlocks);
+    EXPECT_EQ(r.slave.dp_state(), chip::DpState::data_exch);
+}
+
+// proves: VPC3C 7.3.1-06
+TEST(VirtualSlaveDpv2, DXB_Link_Status_stands_behind_the_diagnosis_of_the_process_and_is_no_fault) {
+    Rig r{kSubscriber};
+    ASSERT_TRUE(r.bring_up(kLink));
+    r.broadcast(9, 0x08, {1, 2});  // the wrong length
+    r.monitoring_time();
+    EXPECT_EQ(r.told.broken, 1);
+    const Octets own{3, 0xA1, 0x55};
+    EXPECT_EQ(r.slave.set_diagnosis(own, {.ext_diag = true}), driver::DiagResult::handed_over);
+    Octets d = r.master.diag();
+    EXPECT_EQ(Octets(d.begin() + 6, d.end()), (Octets{3, 0xA1, 0x55, 6, 0x83, 0, 0, 9, 0x00}));
+    EXPECT_EQ(d[0] & 0x08, 0x08);
+    EXPECT_EQ(r.slave.set_diagnosis({}), driver::DiagResult::handed_over);
+    d = r.master.diag();
+    EXPECT_EQ(Octets(d.begin() + 6, d.end()), (Octets{6, 0x83, 0, 0, 9, 0x00}));
+    EXPECT_EQ(d[0] & 0x08, 0x00) << "status information: Ext_Diag belongs to the process";
+}
+
+TEST(VirtualSlaveDpv2, DXB_Link_Status_goes_with_its_links_and_is_left_out_without_room) {
+    Rig r{kSubscriber};
+    ASSERT_TRUE(r.bring_up(kLink));
+    r.broadcast(9, 0x08, {1, 2});
+    r.monitoring_time();
+    const Octets long_one(26, 26);  // Max_Diag_Data_Len is 32
+    EXPECT_EQ(r.slave.set_diagnosis(long_one), driver::DiagResult::handed_over);
+    EXPECT_EQ(ext_diag(r), long_one);
+    EXPECT_EQ(r.slave.set_diagnosis(Octets(27, 27)), driver::DiagResult::too_long);
+    EXPECT_EQ(r.slave.set_diagnosis({}), driver::DiagResult::handed_over);
+    EXPECT_EQ(ext_diag(r), (Octets{6, 0x83, 0, 0, 9, 0x00}));
+    ASSERT_TRUE(r.bring_up({}));
+    EXPECT_EQ(ext_diag(r), kNoBlocks);
 }
 
 TEST(VirtualSlaveDpv2, links_that_the_GSD_has_no_room_for_are_refused) {
@@ -133,6 +213,58 @@ TEST(VirtualSlaveDpv2, an_isochronous_drive_tells_of_every_SYNCH) {
     EXPECT_EQ(r.slave.synch_meter().synchs(), 5u);
     EXPECT_EQ(r.slave.synch_meter().missing(), 4u) << "it was told of a millisecond";
     EXPECT_EQ(r.told.synchs[1] - r.told.synchs[0], 2_ms);
+}
+
+// ---- Simple Sync Mode -----------------------------------------------------------------------------------------------
+
+// proves: VPC3C 7.3.2-03
+TEST(VirtualSlaveDpv2, in_Simple_Sync_Mode_outputs_wait_for_the_SYNCH) {
+    Rig r{"", {.simple_sync = true}};
+    r.master.group = 0x80;
+    ASSERT_TRUE(r.bring_up({}));
+    r.synch();
+    r.told.synchs.clear();
+    r.master.exchange({0x11, 0x22});
+    r.master.run(5_ms);
+    EXPECT_NE(Octets(r.slave.outputs().begin(), r.slave.outputs().end()), (Octets{0x11, 0x22}));
+    EXPECT_TRUE(r.told.synchs.empty());
+    const std::uint64_t commands = r.slave.counters().global_control;
+    r.synch();
+    const Ticks end = r.master.last_request_end;
+    r.master.run(1_ms);
+    EXPECT_EQ(Octets(r.slave.outputs().begin(), r.slave.outputs().end()), (Octets{0x11, 0x22}));
+    ASSERT_EQ(r.told.synchs.size(), 1u);
+    EXPECT_LT(r.told.synchs[0] - end, 1_us) << "pin 13 with DX_Out";
+    EXPECT_EQ(r.slave.counters().global_control, commands + 1) << "an ordinary Global_Control, too";
+    r.synch();
+    r.master.run(1_ms);
+    EXPECT_EQ(r.told.synchs.size(), 1u) << "no Data_Exchange before it, no signal";
+    EXPECT_EQ(r.slave.counters().global_control, commands + 2);
+}
+
+TEST(VirtualSlaveDpv2, what_is_a_SYNCH_and_how_the_pin_looks_is_configured) {
+    Rig r{"", {.sync_pol = true, .simple_sync = true, .control_command = 0x08, .group_select = 0x81}};
+    r.master.group = 0x80;
+    ASSERT_TRUE(r.bring_up({}));
+    r.master.send({0xFF, 0x82, 0x46}, {0x3A, 0x3E, 0x08, 0x81});
+    r.told.synchs.clear();
+    r.master.exchange({0x11, 0x22});
+    r.synch();
+    r.master.run(1_ms);
+    EXPECT_TRUE(r.told.synchs.empty()) << "another Global_Control";
+    r.master.send({0xFF, 0x82, 0x46}, {0x3A, 0x3E, 0x08, 0x81});
+    r.master.run(1_ms);
+    EXPECT_EQ(r.told.synchs.size(), 1u);
+    EXPECT_EQ(r.slave.outputs()[0], 0x11);
+}
+
+TEST(VirtualSlaveDpv2, Simple_Sync_Mode_is_refused_where_it_means_nothing) {
+    const SlaveSetup simple{.modules = {"2 in, 2 out"}, .address = 8, .isochron = {.simple_sync = true}};
+    EXPECT_THROW(VirtualSlave(station("Isochron_Mode_supp = 1\n"), simple), SlaveError);
+    SlaveSetup other = simple;
+    other.variant = regmap::Variant::apc3;
+    EXPECT_THROW(VirtualSlave(station(""), other), SlaveError);
+    EXPECT_NO_THROW(VirtualSlave(station(""), simple));
 }
 
 TEST(VirtualSlaveDpv2, a_slave_with_Time_Sync_follows_the_time) {
