@@ -50,7 +50,8 @@ bool plausible(const State& s) {
     const bool rates = static_cast<std::size_t>(s.probe) < fdl::kBaudRates &&
                        (s.baud == fdl::BaudCode::not_found || static_cast<std::size_t>(s.baud) < fdl::kBaudRates);
     const bool counts = s.rx_count <= fdl::kMaxTelegram && s.tx_count <= fdl::kMaxTelegram && s.kept_count <= fdl::kMaxTelegram && s.prm_counter <= 2 && s.cfg_counter <= 2 &&
-                        s.request_data_at + s.request_length <= fdl::kMaxTelegram && s.leave_after_answer <= 10;
+                        s.request_data_at + s.request_length <= fdl::kMaxTelegram && s.leave_after_answer <= 10 &&
+                        s.xcts_hold <= transmitter::kHeldLater;
     const bool aux = s.aux_waiting[0] <= AuxUser::cfg && s.aux_waiting[1] <= AuxUser::cfg && s.prm_present <= AuxUser::cfg;
     bool times = s.now >= Ticks{} && s.user_clock_due >= Ticks{} && s.prescaler_origin >= Ticks{} && s.prescaler_origin <= s.now;
     for (const Ticks t : s.timers) times = times && t >= Ticks{};
@@ -154,9 +155,18 @@ bool Chip<Trace>::take(fdl::Transmission& t) {
 
 template <class Trace>
 void Chip<Trace>::sent(Ticks at) {
-    if (transmitter::sending(c_.s)) timers::start(c_.s, Timer::answer_end, std::max(at, c_.s.now));
+    transmitter::sent(c_.s, at);
     c_.s.next = ms::next(c_.s);
 }
+
+template <class Trace>
+void Chip<Trace>::hold() {
+    transmitter::hold(c_.s);
+    c_.s.next = ms::next(c_.s);
+}
+
+template <class Trace>
+void Chip<Trace>::line_low(Ticks until) { c_.s.line_idle_since = std::max(c_.s.line_idle_since, until); }
 
 template <class Trace>
 bool Chip<Trace>::hears_all() const {

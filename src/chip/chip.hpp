@@ -66,8 +66,13 @@ public:
     void carrier(Ticks at);
     /// True, and `t` filled, when an answer starts now.
     bool take(fdl::Transmission& t);
-    /// What take() gave has left the line at `at`, before its bit times are over: sending ends then (live lines).
+    /// What take() gave leaves, or has left, the line at `at` and not when its bit times are over: sending ends then. For
+    /// whoever sends the bits (live lines, pins/). May be said again when it is known better, until then.
     void sent(Ticks at);
+    /// XCTS holds a character in the middle of what take() gave (8.3): sending goes on until sent() says when it ends.
+    void hold();
+    /// RXD was low until `until`: TSYN counts from there on. For whoever looks at bits; characters say it by themselves.
+    void line_low(Ticks until);
     /// True while searching the baud rate or out of synchronisation.
     bool hears_all() const;
     /// R_TS_Adr as latched at Start or changed by Set_Slave_Add; 255 while Offline.

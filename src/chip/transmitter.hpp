@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The transmitter: from a decided answer to octets on the line, RTS and XCTS (8.3; reference 1.5, 2.7, 4.13).
 //
-// XCTS is looked at before the first character. A hold between characters is a matter of pins/.
+// XCTS is looked at before the first character. Between characters pins/ looks at it and says hold() and sent().
 #pragma once
 
 #include <dpchip/chip/data_buffers.hpp>
@@ -144,6 +144,9 @@ void plan(C& c, Answer answer) {
     timers::start(c.s, Timer::rts_on, std::max(c.s.now, c.s.answer_at - lead));
 }
 
+/// Values of xcts_hold: which character waits for XCTS.
+inline constexpr std::uint8_t kNotHeld = 0, kHeldFirst = 1, kHeldLater = 2;
+
 template <class C>
 void set_rts(C& c, bool on) {
     if ((c.s.rts != 0) == on) return;
@@ -157,15 +160,15 @@ void rts_on(C& c) {
     timers::stop(c.s, Timer::rts_off);
     set_rts(c, true);
     compose(c);
-    if (c.s.xcts_high != 0) c.s.xcts_hold = 1;
+    if (c.s.xcts_high != 0) c.s.xcts_hold = kHeldFirst;
     else timers::start(c.s, Timer::answer_start, std::max(c.s.now, c.s.answer_at));
 }
 
 /// XCTS went low: the held first character may go.
 template <class C>
 void clear_to_send(C& c) {
-    if (c.s.xcts_hold == 0) return;
-    c.s.xcts_hold = 0;
+    if (c.s.xcts_hold != kHeldFirst) return;
+    c.s.xcts_hold = kNotHeld;
     c.s.answer_at = std::max(c.s.now, c.s.answer_at);
     timers::start(c.s, Timer::answer_start, c.s.answer_at);
 }
@@ -194,15 +197,29 @@ void end(C& c) {
 
 /// An answer is planned or held back but has not begun.
 constexpr bool planned(const State& s) {
-    return timers::running(s, Timer::rts_on) || timers::running(s, Timer::answer_start) || s.xcts_hold != 0;
+    return timers::running(s, Timer::rts_on) || timers::running(s, Timer::answer_start) || s.xcts_hold == kHeldFirst;
 }
-constexpr bool sending(const State& s) { return timers::running(s, Timer::answer_end); }
+constexpr bool sending(const State& s) { return timers::running(s, Timer::answer_end) || s.xcts_hold == kHeldLater; }
+
+/// XCTS holds a later character: when sending ends is open until sent().
+constexpr void hold(State& s) {
+    if (!timers::running(s, Timer::answer_end)) return;
+    timers::stop(s, Timer::answer_end);
+    s.xcts_hold = kHeldLater;
+}
+
+/// Whoever sends the bits knows when the last of them leaves the line.
+constexpr void sent(State& s, Ticks at) {
+    if (!sending(s)) return;
+    s.xcts_hold = kNotHeld;
+    timers::start(s, Timer::answer_end, std::max(at, s.now));
+}
 
 template <class C>
 void give_up(C& c) {
     timers::stop(c.s, Timer::rts_on);
     timers::stop(c.s, Timer::answer_start);
-    c.s.xcts_hold = 0;
+    c.s.xcts_hold = kNotHeld;
     set_rts(c, false);
     c.fact(Fact::answer_given_up, 0);
     c.find(Rule::answer_lost, core::to_underlying(c.s.answer));

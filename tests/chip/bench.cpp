@@ -209,20 +209,60 @@ std::uint8_t Bench::give_diag(std::uint8_t control_bits, std::string_view ext_di
 /// One way to an event: in chunks where the test wants them.
 void Bench::move(Ticks to) {
     while (chunk_ != core::kNever && to - chip_.now() > chunk_) {
-        chip_.advance(chip_.now() + chunk_);
+        move_chip(chip_.now() + chunk_);
         if (meddler_) meddler_(chip_);
     }
-    chip_.advance(to);
+    move_chip(to);
+}
+
+/// An answer begins now: the chip gives it away or, bit by bit, its first start bit is on TXD.
+bool Bench::begins_to_send(fdl::Transmission& sent) {
+    if (!by_bits()) return chip_.take(sent);
+    const std::size_t before = txd_.size();
+    collect_edges();
+    const bool idle = before == 0 || txd_[before - 1].level == pins::PinLevel::z || uart_.state().tx_index == 0;
+    if (!idle || txd_.empty() || txd_.size() == before || txd_.back().at != chip_.now() || txd_.back().level != pins::PinLevel::low) return false;
+    if (uart_.state().tx_index != 0 || uart_.state().tx_start != chip_.now()) return false;
+    txd_.erase(txd_.begin(), txd_.end() - 1);
+    const chip::State& s = chip_.state();
+    sent.assign(chip_.now(), s.answer_bit, {s.tx.data(), s.tx_count});
+    return true;
+}
+
+void Bench::collect_edges() {
+    while (!uart_.edges().empty()) txd_.push_back(uart_.edges().pop());
+    EXPECT_EQ(uart_.edges().overflows(), 0u);
+}
+
+/// What the edges on TXD since `start` say, read in the middle of every bit.
+Octets Bench::octets_on_txd(Ticks start) const {
+    const auto level_at = [&](Ticks at) {
+        pins::PinLevel level = pins::PinLevel::z;
+        for (const pins::PinEdge& e : txd_)
+            if (e.at <= at) level = e.level;
+        return level;
+    };
+    Octets octets;
+    for (;; start += bits(fdl::kCharacterBits)) {
+        const auto middle = [&](std::int64_t n) { return level_at(start + bits(n) + Ticks{bit().n / 2}); };
+        if (middle(0) != pins::PinLevel::low) break;
+        unsigned octet = 0;
+        for (int n = 0; n < 8; ++n) octet |= middle(1 + n) == pins::PinLevel::high ? 1u << n : 0u;
+        octets.push_back(static_cast<std::uint8_t>(octet));
+        EXPECT_EQ(middle(9) == pins::PinLevel::high, fdl::even_parity(octets.back()));
+        EXPECT_EQ(middle(10), pins::PinLevel::high);
+    }
+    return octets;
 }
 
 /// Advances event by event up to `to`; stops early, true, when the chip begins to send.
 bool Bench::step(Ticks to, Answer& answer) {
     fdl::Transmission sent;
     int standstill = 0;
-    while (chip_.next() <= to) {
+    while (next() <= to) {
         const Ticks before = chip_.now();
-        move(std::max(chip_.next(), before));
-        if (chip_.take(sent)) {
+        move(std::max(next(), before));
+        if (begins_to_send(sent)) {
             EXPECT_EQ(sent.start, chip_.now()) << "an answer begins when it is taken";
             answer = {Octets(sent.bytes().begin(), sent.bytes().end()), sent.start, sent.end()};
             if (meddler_) meddler_(chip_);
@@ -246,6 +286,12 @@ std::optional<Answer> Bench::listen(std::int64_t bit_times) {
     if (!step(request_end_ + bits(bit_times) + 20_us, answer)) return std::nullopt;
     free_ = answer.end;
     run_to(answer.end + 4_clk);
+    if (by_bits()) {
+        collect_edges();
+        EXPECT_EQ(octets_on_txd(answer.start), answer.octets);
+        EXPECT_EQ(uart_.txd(), pins::PinLevel::z);
+        txd_.clear();
+    }
     last_answer_ = answer;
     return answer;
 }
@@ -259,8 +305,17 @@ std::string Bench::listen_text() {
 // ----------------------------------------------------------------------------------------------------------
 
 void Bench::tell(const Stimulus& stimulus) {
-    const Ticks begin = std::max(now(), free_ + bits(fdl::kTsynBits + 4));
+    Ticks begin = std::max(now(), free_ + bits(fdl::kTsynBits + 4));
+    if (by_bits()) {
+        run_to(begin);
+        begin = uart_.next_sample_from(begin);
+    }
     run_to(begin);
+    if (by_bits()) {
+        tell_bits(begin, stimulus);
+        request_end_ = free_ = now();
+        return;
+    }
     chip_.carrier(begin);
     if (recipe_.path == Path::characters || !stimulus.faults.empty() || !stimulus.gaps.empty()) {
         tell_characters(begin, stimulus);
@@ -282,6 +337,35 @@ void Bench::tell_characters(Ticks start, const Stimulus& stimulus) {
         run_to(c.end());
         chip_.hear_character(c);
         if (meddler_) meddler_(chip_);
+        start = c.end();
+        for (const Gap& g : stimulus.gaps)
+            if (g.after == i) start += bits(g.bits);
+    }
+}
+
+/// A bad stop bit is low in its middle and high in its last quarter: else the next start bit would have no edge.
+void Bench::send_bits(const fdl::Character& c) {
+    const bool parity = fdl::even_parity(c.octet) != ((c.faults & (fdl::fault_parity | fdl::fault_collision)) != 0);
+    const unsigned frame = static_cast<unsigned>(c.octet) << 1 | (parity ? 1u << 9 : 0u) | ((c.faults & fdl::fault_stop) == 0 ? 1u << 10 : 0u);
+    const auto put = [&](Ticks at, bool high) {
+        run_to(at);
+        uart_.set_rxd(chip_, at, pins::to_level(high));
+        uart_.sample(chip_);
+        if (meddler_) meddler_(chip_);
+    };
+    for (unsigned n = 0; n < 11; ++n) put(c.start + bits(n), ((frame >> n) & 1u) != 0);
+    put(c.end() - Ticks{bit().n / 4}, true);
+    run_to(c.end());
+}
+
+void Bench::tell_bits(Ticks start, const Stimulus& stimulus) {
+    for (std::size_t i = 0; i < stimulus.octets.size(); ++i) {
+        std::uint8_t faults = 0;
+        for (const Fault& f : stimulus.faults)
+            if (f.octet == i) faults |= f.faults;
+        const fdl::Character c{start, bit(), stimulus.octets[i], faults};
+        run_to(start);
+        send_bits(c);
         start = c.end();
         for (const Gap& g : stimulus.gaps)
             if (g.after == i) start += bits(g.bits);
@@ -336,7 +420,7 @@ void Bench::find_baud() {
     const Octets status = request(2, 0x49, std::nullopt, {});
     while (chip_.wd_state() == chip::WdState::baud_search && now() < limit) {
         tell(Stimulus{status, {}, {}});
-        run(4_clk);
+        run(by_bits() ? bits(1) : 4_clk);  // the grid may have started again in the middle of it
     }
     EXPECT_LT(now(), limit) << "no baud rate found";
     run(bits(fdl::kTsynBits + 4));

@@ -2,7 +2,8 @@
 // A test bench around one chip: a processor with a minimal firmware on one side, a bus with masters on the other.
 //
 // Preconditions P0, P1, P2 and the rules for running checks are those of the engineering reference (8.1, 8.2). The
-// bench speaks to the chip either in whole telegrams or character by character; every check runs both ways.
+// bench speaks to the chip in whole telegrams, character by character, or bit by bit through a UART; every check runs
+// all three ways. Bits begin on the sampling grid, so that times are the same.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,7 @@
 
 #include <dpchip/chip/chip.hpp>
 #include <dpchip/fdl/baud.hpp>
+#include <dpchip/pins/uart.hpp>
 #include <dpchip/regmap/address.hpp>
 
 namespace dpchip::bench {
@@ -35,7 +37,10 @@ std::string text(std::span<const std::uint8_t> octets);
 inline constexpr std::string_view kSilence = "silence";
 
 /// How telegrams reach the chip.
-enum class Path : std::uint8_t { telegrams, characters };
+enum class Path : std::uint8_t { telegrams, characters, bits };
+constexpr std::string_view name(Path path) {
+    return path == Path::telegrams ? "telegrams" : path == Path::characters ? "characters" : "bits";
+}
 
 /// What a bench is built for: the figures of precondition P0, each of which a check may change.
 struct Recipe {
@@ -180,11 +185,21 @@ private:
     void remember(const Octets& request);
     std::string send(const Octets& octets);
     void tell_characters(Ticks start, const Stimulus& stimulus);
+    void tell_bits(Ticks start, const Stimulus& stimulus);
+    void send_bits(const fdl::Character& c);
+    bool begins_to_send(fdl::Transmission& sent);
+    void collect_edges();
+    Octets octets_on_txd(Ticks start) const;
+    Ticks next() const { return by_bits() ? uart_.next(chip_) : chip_.next(); }
+    bool by_bits() const { return recipe_.path == Path::bits; }
+    void move_chip(Ticks to) { by_bits() ? uart_.advance(chip_, to) : chip_.advance(to); }
     bool step(Ticks to, Answer& answer);
     void move(Ticks to);
 
     Recipe recipe_;
     ChipUnderTest chip_;
+    pins::Uart<core::RingTrace> uart_{};       ///< Path::bits: moves the chip
+    std::vector<pins::PinEdge> txd_{};         ///< edges since the chip began to send
     Ticks free_{};  ///< end of the last activity on the line
     Ticks request_end_{};
     Answer last_answer_{};

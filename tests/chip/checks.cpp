@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which chips each suite of checks runs on, in whole telegrams and character by character.
+// Which chips each suite of checks runs on, in whole telegrams, character by character, bit by bit.
 #include "checks.hpp"
 
 #include <string>
@@ -12,7 +12,7 @@ std::vector<Case> cases(regmap::VariantSet chips) {
     std::vector<Case> out;
     for (const regmap::Traits& t : regmap::kTraits)
         if (chips.has(t.variant))
-            for (const Path path : {Path::telegrams, Path::characters}) out.push_back({t.variant, path});
+            for (const Path path : {Path::telegrams, Path::characters, Path::bits}) out.push_back({t.variant, path});
     return out;
 }
 
@@ -29,7 +29,7 @@ std::string name(const ::testing::TestParamInfo<Case>& info) {
     for (const char c : regmap::traits(info.param.variant).name)
         if (c != '+') out += c;
         else out += "plus";
-    return out + (info.param.path == Path::telegrams ? "_telegrams" : "_characters");
+    return out + '_' + std::string{bench::name(info.param.path)};
 }
 
 INSTANTIATE_TEST_SUITE_P(Chip, Checks, ::testing::ValuesIn(cases(regmap::kAllVariants)), name);

@@ -19,7 +19,7 @@ struct Case {
     Path path{};
 };
 inline std::ostream& operator<<(std::ostream& out, const Case& c) {
-    return out << regmap::traits(c.variant).name << (c.path == Path::telegrams ? ", telegrams" : ", characters");
+    return out << regmap::traits(c.variant).name << ", " << bench::name(c.path);
 }
 
 /// Checks that hold for every chip of the family.

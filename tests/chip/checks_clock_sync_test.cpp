@@ -124,7 +124,7 @@ TEST_P(ChecksClockSync, figure_7_20_marks_1_to_4) {
     recording.heading("4: update system timer");
     r.b.run(20_us);
     r.b.acknowledge(irq::clock_sync);
-    EXPECT_TRUE(test::matches_golden("chip/figure_7_20.trace", recording.text()));
+    EXPECT_TRUE(matches_golden(GetParam().path, "chip/figure_7_20.trace", recording.text()));
 }
 
 /// The user's part of figure 7-24: Status, the buffer if the time is good, acknowledgement last. Returns the delay.
@@ -161,7 +161,7 @@ TEST_P(ChecksClockSync, figure_7_24_user_and_chip) {
     tell(r.b, kClockValue);
     r.b.run(10_us);
     static_cast<void>(handle_interrupt(r));
-    EXPECT_TRUE(test::matches_golden("chip/figure_7_24.trace", recording.text()));
+    EXPECT_TRUE(matches_golden(GetParam().path, "chip/figure_7_24.trace", recording.text()));
 }
 
 // ---- figure 7-23: the buffer ------------------------------------------------------------------------------------------
@@ -269,6 +269,18 @@ TEST_P(ChecksClockSync, the_check_passes_again_one_sequence_after_the_one_that_f
     r.value(kTime1, kTime0);
     EXPECT_EQ(r.status(), cs::kSetTime);
     EXPECT_EQ(r.time(), kTime1);
+}
+
+// proves: VPC3C 7.3.3-33
+TEST_P(ChecksClockSync, the_reserved_bits_of_Command_mean_nothing) {
+    Receiver r{recipe()};
+    r.b.write(r.at(cs::command), 0xF8);
+    EXPECT_EQ(r.state(), chip::CsState::wait_te) << "it runs on";
+    tell(r.b, kTimeEvent);
+    r.value(kTime1, "00 00 00 00 00 00 00 00");
+    EXPECT_EQ(r.status(), cs::kSetTime) << "and checks nothing";
+    EXPECT_EQ(r.b.ask(kPrm), kSc);
+    EXPECT_EQ(r.state(), chip::CsState::stopped) << "and stops with new parameters";
 }
 
 TEST_P(ChecksClockSync, an_unacknowledged_interrupt_keeps_the_buffer) {

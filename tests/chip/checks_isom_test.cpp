@@ -87,13 +87,13 @@ std::string figure_7_17(Bench& b) {
 // proves: VPC3C 7.3.2-05
 TEST_P(ChecksStepBC, figure_7_17_Isochron_Mode) {
     Bench b = synchronous(recipe(), kIsochron);
-    EXPECT_TRUE(test::matches_golden("chip/figure_7_17_isochron.trace", figure_7_17(b)));
+    EXPECT_TRUE(matches_golden(GetParam().path, "chip/figure_7_17_isochron.trace", figure_7_17(b)));
 }
 
 // proves: VPC3C 7.3.2-05
 TEST_P(ChecksStepBC, figure_7_17_Simple_Sync_Mode) {
     Bench b = synchronous(recipe(), kSimpleSync);
-    EXPECT_TRUE(test::matches_golden("chip/figure_7_17_simple_sync.trace", figure_7_17(b)));
+    EXPECT_TRUE(matches_golden(GetParam().path, "chip/figure_7_17_simple_sync.trace", figure_7_17(b)));
 }
 
 // ---- the SYNCH telegram ---------------------------------------------------------------------------------------------
