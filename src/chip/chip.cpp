@@ -62,7 +62,7 @@ bool plausible(const State& s) {
 
 template <class Trace>
 Chip<Trace>::Chip(Variant variant, const Options& options, BusMode bus_mode)
-    : c_{.s = {}, .traits = &regmap::traits(variant), .options = options, .edges = {}, .findings = {}, .trace = {}} {
+    : c_{.s = {}, .traits = &regmap::traits(variant), .options = options, .edges = {}, .findings = {}, .ram_uses = {}, .ram_watched = false, .trace = {}} {
     c_.s.bus_mode = bus_mode;
     reset_registers(c_.s, *c_.traits, c_.options);
     if (options.ram_after_reset == regmap::RamAfterReset::ones) c_.s.ram.fill(0xFF);

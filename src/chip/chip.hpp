@@ -89,6 +89,11 @@ public:
     void watch(std::uint8_t pin_mask) { c_.s.watched_pins = pin_mask; }
     core::FixedQueue<Edge, 64>& edges() { return c_.edges; }
 
+    // ---- Dual-Port RAM (8.2) ------------------------------------------------------------------------------------
+    /// Whether the Micro Sequencer's use of the RAM is queued in ram_uses(). Not at first.
+    void watch_ram(bool on) { c_.ram_watched = on; }
+    core::FixedQueue<RamUse, 32>& ram_uses() { return c_.ram_uses; }
+
     // ---- inspection -------------------------------------------------------------------------------------------
     Variant variant() const { return c_.traits->variant; }
     const Traits& traits() const { return *c_.traits; }

@@ -44,6 +44,7 @@ bool contiguous(C& c, std::uint8_t segment, std::size_t octets) {
 /// Writes a buffer. The usual case, a buffer inside the RAM, is one copy.
 template <class C>
 void write(C& c, std::uint8_t segment, std::span<const std::uint8_t> data) {
+    c.ram_used(data.size());
     if (contiguous(c, segment, data.size())) {
         if (!data.empty()) std::memcpy(c.s.ram.data() + base(c.s, segment), data.data(), data.size());
         return;
@@ -53,6 +54,7 @@ void write(C& c, std::uint8_t segment, std::span<const std::uint8_t> data) {
 
 template <class C>
 void read(C& c, std::uint8_t segment, std::span<std::uint8_t> data) {
+    c.ram_used(data.size());
     if (contiguous(c, segment, data.size())) {
         if (!data.empty()) std::memcpy(data.data(), c.s.ram.data() + base(c.s, segment), data.size());
         return;
@@ -62,11 +64,13 @@ void read(C& c, std::uint8_t segment, std::span<std::uint8_t> data) {
 
 template <class C>
 void zero(C& c, std::uint8_t segment, std::size_t octets) {
+    c.ram_used(octets);
     for (std::size_t i = 0; i < octets; ++i) c.s.ram[physical(c, segment, i)] = 0;
 }
 
 template <class C>
 bool equal(C& c, std::uint8_t segment, std::span<const std::uint8_t> data) {
+    c.ram_used(data.size());
     for (std::size_t i = 0; i < data.size(); ++i)
         if (c.s.ram[physical(c, segment, i)] != data[i]) return false;
     return true;

@@ -26,6 +26,8 @@ public:
         --size_;
         return value;
     }
+    /// The oldest value. The queue must not be empty.
+    constexpr const T& front() const { DPCHIP_ASSERT(size_ != 0); return items_[head_]; }
     [[nodiscard]] constexpr bool empty() const { return size_ == 0; }
     [[nodiscard]] constexpr std::size_t size() const { return size_; }
     [[nodiscard]] constexpr std::uint64_t overflows() const { return overflows_; }

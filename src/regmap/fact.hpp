@@ -45,6 +45,8 @@ enum class Fact : std::uint16_t {
     freeze_mode,       ///< b: 0, 1
     station_address,   ///< b: the address from now on
     finding,           ///< a: Rule, b: detail
+    pin_finding,       ///< a: PinRule, b: detail
+    ram_wait,          ///< b: CLK periods that the Micro Sequencer has waited for the RAM since power-on (8.2)
     count
 };
 

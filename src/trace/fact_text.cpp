@@ -10,6 +10,7 @@
 #include <dpchip/regmap/interrupts.hpp>
 #include <dpchip/regmap/names.hpp>
 #include <dpchip/trace/fact_text.hpp>
+#include <dpchip/trace/pin_finding_text.hpp>
 #include <dpchip/trace/text.hpp>
 
 namespace dpchip::trace {
@@ -26,7 +27,7 @@ constexpr std::array<const char*, static_cast<std::size_t>(Fact::count)> kNames{
     "heard",           "proof",         "retry",           "rejected",      "answer",       "answer_end",
     "answer_given_up", "Din_Buffer_SM", "Dout_Buffer_SM",  "DXBout_Buffer_SM", "Diag_Buffer_SM", "diag_flag",
     "exchange",        "prm_counter",   "cfg_counter",     "leave_master",  "user_wd",      "sync_mode",
-    "freeze_mode",     "station_address", "finding"};
+    "freeze_mode",     "station_address", "finding",     "pin_finding",   "ram_wait"};
 static_assert(kNames.back() != nullptr, "every fact has a name");
 
 constexpr std::array<const char*, 10> kCauses{"unlock", "faulty Set_Prm", "User_Prm_Data_Not_Okay", "User_Cfg_Data_Not_Okay",
@@ -135,6 +136,8 @@ std::string value_words(const TraceRecord& r, Variant variant, bool clock_sync) 
         return std::string{dp::name(dp::service(static_cast<std::uint8_t>(r.a)))} + ": aux now " + hex_number(r.b >> 8) + ", target " + hex_number(r.b & 0xFFu);
     case Fact::leave_master: return r.a < kCauses.size() ? kCauses[r.a] : "?";
     case Fact::finding: return finding(r);
+    case Fact::pin_finding: return pin_finding_text(r.a, r.b);
+    case Fact::ram_wait: return std::to_string(r.b) + " CLK in all";
     case Fact::diag_flag:
     case Fact::prm_counter:
     case Fact::cfg_counter:

@@ -6,6 +6,7 @@
 
 #include <dpchip/chip/chip.hpp>
 #include <dpchip/regmap/address.hpp>
+#include <dpchip/regmap/pin_rules.hpp>
 #include <dpchip/trace/fact_text.hpp>
 
 namespace dpchip::trace {
@@ -47,7 +48,10 @@ INSTANTIATE_TEST_SUITE_P(Each, FactReads, testing::Values(
     Row{Fact::leave_master, 5, 0, "leave_master watchdog"}, Row{Fact::diag_flag, 0, 1, "diag_flag 1"},
     Row{Fact::finding, 4, 0x0C40, "finding iar_protected 0C40H: IAR does not clear New_Prm_Data, New_Ext_Prm_Data and New_Cfg_Data (5.3.2)"},
     Row{Fact::finding, 999, 0, "finding rule 999"}, Row{Fact::leave_master, 99, 0, "leave_master ?"}, Row{Fact::rejected, 99, 0, "rejected ? after 0 octets"},
-    Row{Fact::count, 0, 0, "fact 33"}));
+    Row{Fact::count, 0, 0, "fact 35"},
+    Row{Fact::pin_finding, 0, regmap::pack({16, regmap::Supply::v5, core::Ticks{-1}}),
+        "pin_finding timing 16, address set-up before XRD or XWR: -0.016 ns, at least 0 ns (5 V, figure 10-14)"},
+    Row{Fact::pin_finding, 4, 30, "pin_finding floating_input at pin 30: an input without pull-down is not driven: its last level is kept (3.1)"}, Row{Fact::ram_wait, 0, 7, "ram_wait 7 CLK in all"}));
 
 TEST(FactText, HasADifferentNameForEveryFact) {
     std::set<std::string> names;
