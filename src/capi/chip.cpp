@@ -2,8 +2,6 @@
 // dpchip_chip_*: the chip behind the C API.
 #include "chip.hpp"
 
-#include <cstdio>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -86,58 +84,12 @@ constexpr std::int64_t kLongestAccess_ns = 1'000'000;
 
 int null_chip() { return fail(DPCHIP_E_ARGUMENT, "the chip is a null pointer"); }
 
-std::string variant_names() {
-    std::string names;
-    for (const regmap::Traits& t : regmap::kTraits) names += (names.empty() ? "" : ", ") + std::string{t.name};
-    return names;
-}
-
-const char* words(regmap::OptionError error) {
-    switch (error) {
-    case regmap::OptionError::unknown_name: return "there is no such option";
-    case regmap::OptionError::bad_value: return "not a value of this option";
-    case regmap::OptionError::out_of_range: return "out of the option's range";
-    }
-    return "refused";
-}
-
-std::string values_of(std::string_view name) {
-    for (const regmap::OptionInfo& o : regmap::option_table())
-        if (o.name == name) return " (it takes " + std::string{o.values} + ")";
-    return {};
-}
-
-const char* kind_name(dpchip::core::FindingKind kind) {
-    switch (kind) {
-    case dpchip::core::FindingKind::misuse: return "misuse";
-    case dpchip::core::FindingKind::unusual: return "unusual";
-    case dpchip::core::FindingKind::unverified: return "unverified";
-    case dpchip::core::FindingKind::timing_violation: return "timing violation";
-    }
-    return "finding";
-}
-
-dpchip_chip_info info_of(const dpchip_chip& chip) {
-    const auto& m = chip.model;
-    dpchip_chip_info info{};
-    info.online = m.online() ? 1 : 0;
-    info.dp_state = static_cast<int>(m.dp_state());
-    info.wd_state = static_cast<int>(m.wd_state());
-    info.baud_code = static_cast<int>(m.baud());
-    info.address = m.address();
-    info.owner = m.owner();
-    info.findings = static_cast<std::uint32_t>(m.findings().size());
-    return info;
-}
-
 }  // namespace
 
 dpchip_chip* dpchip_chip_create(const char* variant) {
     return guarded([&]() -> dpchip_chip* {
-        const auto v = variant == nullptr ? std::nullopt : regmap::variant_from_name(variant);
-        if (v) return std::make_unique<dpchip_chip>(*v).release();
-        fail(DPCHIP_E_NAME, "no chip is called '" + std::string{variant == nullptr ? "(null)" : variant} + "'; known: " + variant_names());
-        return nullptr;
+        const auto v = dpchip::capi::variant_called(variant);
+        return v ? std::make_unique<dpchip_chip>(*v).release() : nullptr;
     }, [](int) -> dpchip_chip* { return nullptr; });
 }
 
@@ -235,12 +187,7 @@ int dpchip_chip_run_ticks(dpchip_chip* chip, int64_t ticks) {
 
 int dpchip_chip_set_option(dpchip_chip* chip, const char* name, const char* text) {
     if (chip == nullptr || name == nullptr || text == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
-    return guarded([&] {
-        const auto result = regmap::set_option(chip->model.options(), name, text);
-        if (result) return static_cast<int>(DPCHIP_OK);
-        const int code = result.error() == regmap::OptionError::unknown_name ? DPCHIP_E_NAME : DPCHIP_E_ARGUMENT;
-        return fail(code, std::string{name} + "=" + text + ": " + words(result.error()) + values_of(name));
-    });
+    return guarded([&] { return dpchip::capi::set_chip_option(chip->model, name, text); });
 }
 
 int dpchip_chip_set_bus_mode(dpchip_chip* chip, int mode) {
@@ -269,32 +216,23 @@ int dpchip_chip_set_xcts(dpchip_chip* chip, int level) {
 
 int dpchip_chip_get_info(const dpchip_chip* chip, dpchip_chip_info* info) {
     if (chip == nullptr || info == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
-    if (info->size < sizeof(size_t)) return fail(DPCHIP_E_ARGUMENT, "dpchip_chip_info.size is not set");
-    dpchip_chip_info known = info_of(*chip);
-    known.size = info->size;
-    std::memcpy(info, &known, std::min(info->size, sizeof known));
-    return DPCHIP_OK;
+    return dpchip::capi::fill_info(chip->model, info);
 }
 
 int dpchip_chip_finding(dpchip_chip* chip, char* text, size_t capacity) {
     if (chip == nullptr || (text == nullptr && capacity != 0)) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
-    auto& findings = chip->model.findings();
-    if (findings.empty()) return 0;
-    const auto f = findings.pop();
-    const auto& rule = regmap::kRules[f.rule];
-    std::snprintf(text, capacity, "%lld ns: %s: %.*s [%.*s, %04XH]", static_cast<long long>(dpchip::core::to_ns(f.at)),
-                  kind_name(f.kind), static_cast<int>(rule.text.size()), rule.text.data(), static_cast<int>(rule.name.size()),
-                  rule.name.data(), static_cast<unsigned>(f.detail));
-    return 1;
+    if (chip->model.findings().empty()) return 0;
+    return guarded([&] {
+        dpchip::capi::give_text(dpchip::capi::chip_finding(chip->model.findings().pop()), text, capacity);
+        return 1;
+    });
 }
 
 size_t dpchip_chip_snapshot_size(const dpchip_chip*) { return dpchip::capi::Model::snapshot_size(); }
 
 int64_t dpchip_chip_save(const dpchip_chip* chip, void* bytes, size_t capacity) {
     if (chip == nullptr || bytes == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
-    const auto result = chip->model.save({static_cast<std::uint8_t*>(bytes), capacity});
-    if (!result) return fail(DPCHIP_E_SPACE, "a snapshot takes " + std::to_string(dpchip::capi::Model::snapshot_size()) + " octets");
-    return static_cast<int64_t>(*result);
+    return guarded([&] { return dpchip::capi::save_model(chip->model, bytes, capacity); });
 }
 
 int dpchip_chip_load(dpchip_chip* chip, const void* bytes, size_t size) {

@@ -9,10 +9,9 @@
 #include <dpchip/segment/station.hpp>
 
 #include "line.hpp"
+#include "model.hpp"
 
 namespace dpchip::capi {
-
-using Model = chip::Chip<core::RingTrace>;
 
 /// The chip as a station. A chip may have lived before it came to the line: its own time differs by `offset`.
 class Attachment {

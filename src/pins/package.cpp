@@ -197,6 +197,12 @@ void Package<Trace>::watch(PinId pin, bool on) {
     if (pin == PinId::clkout) shown_[slot(pin)] = this->pin(pin);
 }
 
+template <class Trace>
+void Package<Trace>::set_options(const PackageOptions& options) {
+    options_ = options;
+    refresh_all();
+}
+
 // ---- inputs -----------------------------------------------------------------------------------------------------
 
 template <class Trace>

@@ -98,7 +98,8 @@ public:
     ProcessorMode mode() const { return biu_.mode(); }
     bool in_reset() const { return in_.is_high(PinId::reset); }
     const PackageOptions& options() const { return options_; }
-    PackageOptions& options() { return options_; }
+    /// At any time; the pull-up shows at once.
+    void set_options(const PackageOptions& options);
 
     // ---- LineSide::telegrams: a segment::Station ------------------------------------------------------------------
     void hear(const fdl::Transmission& t);
