@@ -26,6 +26,7 @@ MAY_INCLUDE = {
     "live": "core fdl segment trace",
     "capi": "core regmap fdl chip pins segment live trace",
     "cli": "core regmap fdl dp gsd chip pins segment master driver slave trace live",
+    "tlm": "",
 }
 MAY_INCLUDE = {layer: set(others.split()) for layer, others in MAY_INCLUDE.items()}
 
@@ -56,11 +57,17 @@ HEAP = set(
     """any deque forward_list functional iomanip istream list locale map memory memory_resource new ostream queue regex
     set sstream stack streambuf string unordered_map unordered_set valarray vector""".split()
 )
+# The packaged SystemC is C++17, so what includes it is too.
+CXX20 = set(
+    """barrier bit compare concepts coroutine format latch numbers ranges semaphore source_location span stop_token
+    syncstream version""".split()
+)
 # Standard headers that would let a layer do what its row in the table says it never does.
 NEVER = {
     **{layer: CLOCKS_AND_THREADS | INPUT_AND_OUTPUT | HEAP for layer in "core regmap fdl dp chip driver pins".split()},
     **{layer: CLOCKS_AND_THREADS | INPUT_AND_OUTPUT for layer in "segment master slave".split()},
     **{layer: CLOCKS_AND_THREADS for layer in "gsd trace".split()},
+    "tlm": CXX20 | CLOCKS_AND_THREADS,
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

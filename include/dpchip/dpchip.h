@@ -170,7 +170,7 @@ DPCHIP_API int dpchip_line_receive(dpchip_line *line, void *bytes, size_t capaci
 
 /* The same without waiting, for a caller with a clock of its own: the octets begin at line time `at_ticks` exactly, whatever
    the rules say (a time that has passed means now), or at the earliest moment that the rules allow when it is negative.
-   DPCHIP_E_STATE while the octets before are on their way. */
+   DPCHIP_E_STATE while octets posted before have not begun. */
 DPCHIP_API int dpchip_line_post(dpchip_line *line, const void *bytes, size_t n, int64_t at_ticks);
 
 /* What was on the line. Set `size` to sizeof(dpchip_telegram) before the call. */

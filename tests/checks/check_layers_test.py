@@ -34,6 +34,8 @@ class Includes(unittest.TestCase):
             ("src/core/a.hpp", "#include <dpchip/version.h>"),
             ("src/capi/a.cpp", "#include <dpchip/dpchip.h>"),
             ("src/live/a.cpp", "#include <boost/asio.hpp>"),
+            ("src/tlm/a.cpp", "#include <systemc>"),
+            ("src/tlm/a.cpp", "#include <dpchip/dpchip_pins.h>"),
             ("src/gsd/a.cpp", '#include "local.hpp"'),
             ("src/core/a.hpp", "/* #include <vector> */ // #include <thread>"),
         ]:
@@ -52,6 +54,8 @@ class Includes(unittest.TestCase):
             ("src/master/a.cpp", "#include <chrono>", "may never do"),
             ("src/master/a.cpp", "#include <fstream>", "may never do"),
             ("src/fdl/a.cpp", '#include "../chip/chip.hpp"', "write <dpchip/...>"),
+            ("src/tlm/a.cpp", "#include <dpchip/core/ticks.hpp>", "tlm may not include core"),
+            ("src/tlm/a.cpp", "#include <span>", "may never do"),
             ("src/surprise/a.cpp", "int x;", "not a layer"),
         ]:
             found = self.breaches(name, line)
