@@ -121,7 +121,7 @@ public:
         if (!plan_.clock || !slave_clock_.valid()) return std::nullopt;
         return slave_clock_.now(local_ns());
     }
-    /// How far the crystal is off as the clock has learnt it from the time master, in parts per billion; 0: not known.
+    /// By how much the crystal is slow as the clock has learnt it from the time master, in parts per billion; 0: not known.
     std::int32_t clock_rate_ppb() const { return slave_clock_.rate_ppb(); }
     /// The crystal against line time, for times that the station tells by its own.
     const core::Clock& crystal() const { return clock_; }

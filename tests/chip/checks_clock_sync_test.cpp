@@ -68,7 +68,8 @@ struct Receiver {
     chip::CsState state() const { return b.chip().state().cs_state; }
 };
 
-// proves: VPC3C 5.1.1-14, VPC3C 5.3.1-11, VPC3C 7.3.3-01, VPC3C 7.3.3-03, VPC3C 7.3.3-05, E004
+// proves: VPC3C 5.1.1-14, VPC3C 5.3.1-11, VPC3C 7.3.3-01, VPC3C 7.3.3-03, VPC3C 7.3.3-08..09, VPC3C 7.3.3-11..12,
+//   VPC3C 7.3.3-19..21, VPC3C 7.3.3-25, VPC3C 7.3.3-29, VPC3C 7.3.3-32, E004
 TEST_P(ChecksClockSync, C130_Time_Event_and_Clock_Value_set_the_time) {
     Receiver r{recipe()};
     tell(r.b, kTimeEvent);
@@ -87,6 +88,7 @@ TEST_P(ChecksClockSync, C130_Time_Event_and_Clock_Value_set_the_time) {
     EXPECT_EQ(r.read_delay(), elapsed) << "until its first octet was read";
 }
 
+// proves: VPC3C 7.3.3-29..30
 TEST_P(ChecksClockSync, C131_a_Clock_Value_of_the_wrong_length_is_a_violation) {
     Receiver r{recipe()};
     tell(r.b, kTimeEvent);
@@ -95,6 +97,7 @@ TEST_P(ChecksClockSync, C131_a_Clock_Value_of_the_wrong_length_is_a_violation) {
     EXPECT_EQ(r.status(), cs::kViolation);
 }
 
+// proves: VPC3C 7.3.3-22, VPC3C 7.3.3-31
 TEST_P(ChecksClockSync, C132_two_intervals_of_silence_are_a_violation) {
     Receiver r{recipe()};
     tell(r.b, kTimeEvent);
@@ -139,7 +142,7 @@ std::uint32_t handle_interrupt(Receiver& r) {
     return delay;
 }
 
-// proves: VPC3C 7.3.3-06
+// proves: VPC3C 7.3.3-06, VPC3C 7.3.3-28
 TEST_P(ChecksClockSync, figure_7_24_user_and_chip) {
     Receiver r{recipe()};
     Recording recording{r.b};
@@ -166,7 +169,7 @@ TEST_P(ChecksClockSync, figure_7_24_user_and_chip) {
 
 // ---- figure 7-23: the buffer ------------------------------------------------------------------------------------------
 
-// proves: VPC3C 7.3.3-05
+// proves: VPC3C 7.3.3-05, VPC3C 7.3.3-45..48
 TEST_P(ChecksClockSync, figure_7_23_the_buffer_lies_at_7E0H_or_FE0H_in_its_own_order) {
     for (const std::uint16_t base : {kBase2k, kBase4k})
         for (const chip::BusMode mode : {chip::BusMode::intel, chip::BusMode::motorola}) {
@@ -190,6 +193,7 @@ TEST_P(ChecksClockSync, figure_7_23_the_buffer_lies_at_7E0H_or_FE0H_in_its_own_o
         }
 }
 
+// proves: VPC3C 7.3.3-09, VPC3C 7.3.3-46
 TEST_P(ChecksClockSync, the_delay_counts_from_the_end_of_the_Time_Event) {
     Receiver r{recipe()};
     tell(r.b, kTimeEvent);
@@ -201,6 +205,7 @@ TEST_P(ChecksClockSync, the_delay_counts_from_the_end_of_the_Time_Event) {
     }
 }
 
+// proves: VPC3C 7.3.3-12
 TEST_P(ChecksClockSync, reading_any_other_octet_does_not_stop_the_delay) {
     Receiver r{recipe()};
     tell(r.b, kTimeEvent);
@@ -214,6 +219,7 @@ TEST_P(ChecksClockSync, reading_any_other_octet_does_not_stop_the_delay) {
 
 // ---- what goes wrong --------------------------------------------------------------------------------------------------
 
+// proves: VPC3C 7.3.3-30
 TEST_P(ChecksClockSync, a_Clock_Value_without_Time_Event_is_a_violation) {
     Receiver r{recipe()};
     tell(r.b, kClockValue);
@@ -235,6 +241,7 @@ TEST_P(ChecksClockSync, a_second_Time_Event_starts_the_delay_and_the_supervision
     EXPECT_EQ(r.read_delay(), static_cast<std::uint32_t>((r.b.now() - second) / 1_us));
 }
 
+// proves: VPC3C 7.3.3-34
 TEST_P(ChecksClockSync, Clock_Value_Check_Ena_compares_the_previous_time) {
     Receiver r{recipe()};
     r.b.write(r.at(cs::command), cs::kCheckEna);
@@ -283,6 +290,7 @@ TEST_P(ChecksClockSync, the_reserved_bits_of_Command_mean_nothing) {
     EXPECT_EQ(r.state(), chip::CsState::stopped) << "and stops with new parameters";
 }
 
+// proves: VPC3C 7.3.3-27
 TEST_P(ChecksClockSync, an_unacknowledged_interrupt_keeps_the_buffer) {
     Receiver r{recipe()};
     tell(r.b, kTimeEvent);
@@ -302,6 +310,7 @@ TEST_P(ChecksClockSync, an_unacknowledged_interrupt_keeps_the_buffer) {
     EXPECT_EQ(r.time(), "C3 12 34 6A 80 00 00 00");
 }
 
+// proves: VPC3C 7.3.3-26
 TEST_P(ChecksClockSync, an_overflow_of_the_delay_clears_Status) {
     Receiver r{recipe()};
     tell(r.b, kTimeEvent);
@@ -329,7 +338,7 @@ TEST_P(ChecksClockSync, a_delay_that_was_read_does_not_overflow) {
     EXPECT_EQ(r.peek_delay(), delay);
 }
 
-// proves: VPC3C 7.3.3-03
+// proves: VPC3C 7.3.3-18
 TEST_P(ChecksClockSync, the_time_goes_on_into_the_era_that_begins_in_2036) {
     Receiver r{recipe()};
     r.b.write(r.at(cs::command), cs::kCheckEna);
@@ -349,7 +358,7 @@ TEST_P(ChecksClockSync, the_time_goes_on_into_the_era_that_begins_in_2036) {
 
 // ---- start and stop ---------------------------------------------------------------------------------------------------
 
-// proves: VPC3C 7.3.3-04
+// proves: VPC3C 7.3.3-04, VPC3C 7.3.3-23..24, VPC3C 7.3.3-36
 TEST_P(ChecksClockSync, the_interval_is_locked_while_the_time_receiver_runs) {
     Receiver r{recipe()};
     r.set_interval(0x0102);
@@ -362,6 +371,7 @@ TEST_P(ChecksClockSync, the_interval_is_locked_while_the_time_receiver_runs) {
     EXPECT_EQ(r.state(), chip::CsState::wait_te);
 }
 
+// proves: VPC3C 7.3.3-04
 TEST_P(ChecksClockSync, the_low_octet_of_an_interval_other_than_0_starts_the_time_receiver) {
     Receiver r{recipe()};
     r.b.write(r.at(cs::command), cs::kStop);
@@ -384,7 +394,7 @@ TEST_P(ChecksClockSync, a_stopped_time_receiver_hears_nothing) {
     EXPECT_EQ(r.status(), 0x00);
 }
 
-// proves: VPC3C 7.3.3-04
+// proves: VPC3C 7.3.3-23, VPC3C 7.3.3-35
 TEST_P(ChecksClockSync, Set_Prm_and_LEAVE_MASTER_stop_it_unless_they_are_ignored) {
     for (const bool ignored : {false, true})
         for (const bool set_prm : {false, true}) {

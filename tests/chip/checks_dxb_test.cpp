@@ -53,6 +53,7 @@ TEST_P(ChecksStepBC, C123_a_publisher_answers_function_code_7_to_everybody) {
     EXPECT_EQ((b.last_answer().start - b.request_end()) / b.bit(), 39) << "minTSDR of the Set_Prm";
 }
 
+// proves: VPC3C 7.3.1-13
 TEST_P(ChecksStepBC, C124_without_Publisher_Enable_function_code_7_is_not_even_answered) {
     Bench b{recipe(), Stage::p2};
     EXPECT_EQ(b.ask(kMulticast), kSilence);
@@ -60,7 +61,7 @@ TEST_P(ChecksStepBC, C124_without_Publisher_Enable_function_code_7_is_not_even_a
 }
 
 // proves: VPC3C 1-04, VPC3C 4.1-12, VPC3C 4.3-14..15, VPC3C 4.3-33..34, VPC3C 4.3-42..43, VPC3C 5.3.1-02,
-//   VPC3C 7.3.1-01, VPC3C 7.3.1-08, VPC3C 7.3.1-10
+//   VPC3C 7.3.1-01, VPC3C 7.3.1-08, VPC3C 7.3.1-12, VPC3C 7.3.1-33..37, VPC3C 7.3.1-43
 TEST_P(ChecksStepBC, C125_a_subscriber_gets_the_samples_of_its_link) {
     Bench b = subscriber(recipe(), kOneLink);
     tell(b, kPublished);
@@ -69,6 +70,7 @@ TEST_P(ChecksStepBC, C125_a_subscriber_gets_the_samples_of_its_link) {
     EXPECT_EQ(link_status(b), 0x01);
 }
 
+// proves: VPC3C 7.3.1-30, VPC3C 7.3.1-43..44
 TEST_P(ChecksStepBC, C126_data_of_another_length_are_a_link_error) {
     Bench b = subscriber(recipe(), kOneLink);
     tell(b, kTooShort);
@@ -77,7 +79,7 @@ TEST_P(ChecksStepBC, C126_data_of_another_length_are_a_link_error) {
     EXPECT_EQ(take_sample(b), "nothing new");
 }
 
-// proves: VPC3C 5.3.1-04, VPC3C 7.3.1-11
+// proves: VPC3C 5.3.1-04, VPC3C 7.3.1-29, VPC3C 7.3.1-45..46, VPC3C 7.3.1-48
 TEST_P(ChecksStepBC, C127_the_links_are_monitored_with_the_watchdog_time) {
     Bench b = subscriber(recipe(), kOneLink);
     tell(b, kPublished);
@@ -117,7 +119,7 @@ constexpr Figure7_14 kFigure7_14[]{
 };
 // clang-format on
 
-// proves: VPC3C 7.3.1-11
+// proves: VPC3C 7.3.1-11, VPC3C 7.3.1-43..44, VPC3C 7.3.1-46..47
 TEST_P(ChecksStepBC, every_row_of_figure_7_14_from_every_link_status) {
     Bench b = subscriber(recipe(), kOneLink);
     for (const Figure7_14& row : kFigure7_14) {
@@ -137,7 +139,7 @@ TEST_P(ChecksStepBC, every_row_of_figure_7_14_from_every_link_status) {
 
 // ---- layouts --------------------------------------------------------------------------------------------------------
 
-// proves: VPC3C 4.3-35..36, VPC3C 7.3.1-06
+// proves: VPC3C 4.3-35..36, VPC3C 7.3.1-06, VPC3C 7.3.1-17, VPC3C 7.3.1-23..24, VPC3C 7.3.1-26..32
 TEST_P(ChecksStepBC, figure_7_10_a_pair_of_octets_per_link_behind_the_header) {
     Bench b = subscriber(recipe(), {{9, 4, 1, 2}, {10, 1, 0, 1}, {11, 2, 0, 2}});
     EXPECT_EQ(text(b.ram(kStatusCells, 10)), "0A 83 00 00 09 00 0A 00 0B 00");
@@ -147,7 +149,7 @@ TEST_P(ChecksStepBC, figure_7_10_a_pair_of_octets_per_link_behind_the_header) {
     EXPECT_EQ(text(b.ram(kLinkCells, 12)), "09 04 01 02 0A 01 00 01 0B 02 00 02") << "the chip only reads the links";
 }
 
-// proves: VPC3C 7.3.1-08, E020
+// proves: VPC3C 7.3.1-08, VPC3C 7.3.1-37..38, E020
 TEST_P(ChecksStepBC, figure_7_11_a_sample_may_fill_244_octets_behind_publisher_and_length) {
     Bench b = subscriber(recipe(), {{9, 244, 0, 244}});
     Octets data(244);
@@ -158,7 +160,7 @@ TEST_P(ChecksStepBC, figure_7_11_a_sample_may_fill_244_octets_behind_publisher_a
     EXPECT_EQ(take_sample(b), text(expected));
 }
 
-// proves: VPC3C 4.2-22, VPC3C 7.3.1-09..10, E021
+// proves: VPC3C 4.2-22, VPC3C 7.3.1-09..10, VPC3C 7.3.1-34, VPC3C 7.3.1-36, VPC3C 7.3.1-39..42, E021
 TEST_P(ChecksStepBC, figures_7_12_and_7_13_the_machine_moves_like_that_of_the_outputs) {
     Bench b = subscriber(recipe(), kOneLink);
     EXPECT_EQ(b.peek(control::dxbout_buffer_sm), 0xE1) << "F 3, U 2, N nil, D 1";
@@ -266,6 +268,7 @@ TEST_P(ChecksStepBC, a_damaged_broadcast_changes_nothing) {
     EXPECT_EQ(link_status(b), 0x01);
 }
 
+// proves: VPC3C 7.3.1-12
 TEST_P(ChecksStepBC, only_answers_with_data_to_127_from_a_publisher_of_the_table_are_samples) {
     Bench b = subscriber(recipe(), kOneLink);
     const Octets data = hex("11 22 33 44");
@@ -282,6 +285,7 @@ TEST_P(ChecksStepBC, only_answers_with_data_to_127_from_a_publisher_of_the_table
     EXPECT_EQ(take_sample(b), "09 02 22 33");
 }
 
+// proves: VPC3C 7.3.1-45
 TEST_P(ChecksStepBC, samples_come_in_DATA_EXCH_only) {
     Bench b{recipe(), Stage::configured};
     write_dxb_cells(b);
@@ -296,6 +300,7 @@ TEST_P(ChecksStepBC, samples_come_in_DATA_EXCH_only) {
     EXPECT_EQ(link_status(b), 0x00);
 }
 
+// proves: VPC3C 7.3.1-49
 TEST_P(ChecksStepBC, without_a_watchdog_the_links_are_not_monitored) {
     Bench b = subscriber(recipe(), kOneLink, "68 0C 0C 68 88 82 5D 3D 3E 80 02 05 0B 47 11 00 CC 16");
     tell(b, kPublished);

@@ -35,7 +35,8 @@ Bench synchronous(Recipe r, std::uint8_t mode2, Compare compare = {}) {
 
 bool pin_13_high(const Bench& b) { return b.chip().level(chip::Pin::xdataexch_sync) == chip::Level::high; }
 
-// proves: VPC3C 1-04, VPC3C 4.2-35, VPC3C 5.1.3-08, VPC3C 7.3.2-02, VPC3C 7.3.2-04, E040
+// proves: VPC3C 1-04, VPC3C 4.2-35, VPC3C 5.1.3-08, VPC3C 7.3.2-02, VPC3C 7.3.2-04, VPC3C 7.3.2-08..09,
+//   VPC3C 7.3.2-16, VPC3C 7.3.2-19, E040
 TEST_P(ChecksStepBC, C128_a_SYNCH_gives_a_pulse_of_48_clk_and_New_GC_Command) {
     Bench b = synchronous(recipe(), kIsochron);
     b.write(org::r_gc_command, 0xFF);
@@ -51,7 +52,7 @@ TEST_P(ChecksStepBC, C128_a_SYNCH_gives_a_pulse_of_48_clk_and_New_GC_Command) {
     EXPECT_EQ(b.peek(org::r_gc_command), 0x00);
 }
 
-// proves: VPC3C 7.3.2-03
+// proves: VPC3C 7.3.2-03, VPC3C 7.3.2-10..12, VPC3C 7.3.2-25
 TEST_P(ChecksStepBC, C129_Simple_Sync_holds_DX_Out_back_until_the_SYNCH) {
     Bench b = synchronous(recipe(), kSimpleSync);
     EXPECT_EQ(b.ask(kDx1234), kInputs);
@@ -90,7 +91,7 @@ TEST_P(ChecksStepBC, figure_7_17_Isochron_Mode) {
     EXPECT_TRUE(matches_golden(GetParam().path, "chip/figure_7_17_isochron.trace", figure_7_17(b)));
 }
 
-// proves: VPC3C 7.3.2-05
+// proves: VPC3C 7.3.2-15
 TEST_P(ChecksStepBC, figure_7_17_Simple_Sync_Mode) {
     Bench b = synchronous(recipe(), kSimpleSync);
     EXPECT_TRUE(matches_golden(GetParam().path, "chip/figure_7_17_simple_sync.trace", figure_7_17(b)));
@@ -98,7 +99,7 @@ TEST_P(ChecksStepBC, figure_7_17_Simple_Sync_Mode) {
 
 // ---- the SYNCH telegram ---------------------------------------------------------------------------------------------
 
-// proves: VPC3C 4.2-36..37, VPC3C 7.3.2-04
+// proves: VPC3C 4.2-36..37, VPC3C 7.3.2-04, VPC3C 7.3.2-13..14
 TEST_P(ChecksStepBC, figure_7_16_both_octets_are_compared) {
     struct Row { std::uint8_t command, group; bool synch; };
     for (const Row& row : {Row{0x04, 0x81, true}, Row{0x04, 0x80, false}, Row{0x00, 0x81, false}, Row{0x05, 0x81, false}}) {
@@ -137,6 +138,7 @@ TEST_P(ChecksStepBC, a_SYNCH_outside_DATA_EXCH_is_none) {
     EXPECT_EQ(b.irr(), 0);
 }
 
+// proves: VPC3C 7.3.2-22
 TEST_P(ChecksStepBC, in_Isochron_Mode_a_SYNCH_is_not_executed_as_Global_Control) {
     // Sync, to group 8: a slave that is not in group 8 shall not enter Sync_Mode by its SYNCH (figure 7-18).
     Bench b = synchronous(recipe(), kIsochron, {.command = 0x20, .group = 0x80});
@@ -147,7 +149,7 @@ TEST_P(ChecksStepBC, in_Isochron_Mode_a_SYNCH_is_not_executed_as_Global_Control)
     EXPECT_EQ(b.peek(org::r_gc_command), 0x20);
 }
 
-// proves: VPC3C 7.3.2-03
+// proves: VPC3C 7.3.2-11, VPC3C 7.3.2-29
 TEST_P(ChecksStepBC, in_Simple_Sync_Mode_a_SYNCH_is_executed_as_Global_Control_too) {
     // Freeze, to group 8, of which the slave is a member (figure 7-19).
     Bench b = synchronous(recipe(), kSimpleSync, {.command = 0x08, .group = 0x80});
@@ -160,6 +162,7 @@ TEST_P(ChecksStepBC, in_Simple_Sync_Mode_a_SYNCH_is_executed_as_Global_Control_t
 
 // ---- the pulse ------------------------------------------------------------------------------------------------------
 
+// proves: VPC3C 7.3.2-19
 TEST_P(ChecksStepBC, Sync_PW_counts_in_twelfths_of_a_microsecond) {
     for (const std::uint8_t width : {std::uint8_t{1}, std::uint8_t{12}, std::uint8_t{255}}) {
         Bench b = synchronous(recipe(), kIsochron, {.sync_pw = width});
@@ -176,7 +179,7 @@ TEST_P(ChecksStepBC, Sync_PW_counts_in_twelfths_of_a_microsecond) {
     EXPECT_EQ(b.irr(), irq::new_gc_command);
 }
 
-// proves: VPC3C 5.1.3-07, E041
+// proves: VPC3C 5.1.3-07, VPC3C 7.3.2-18, VPC3C 7.3.2-26, E041
 TEST_P(ChecksStepBC, SYNC_Pol_turns_pin_13_round_in_both_modes) {
     for (const std::uint8_t mode : {kIsochron, kSimpleSync}) {
         Bench b = synchronous(recipe(), static_cast<std::uint8_t>(mode | m2::sync_pol));
@@ -232,7 +235,7 @@ TEST_P(ChecksStepBC, a_late_SYNCH_gives_a_late_pulse_and_a_missing_one_none) {
     for (std::size_t i = 0; i < ends.size(); ++i) EXPECT_EQ(edges[2 * i].at, ends[i] + 4_clk);
 }
 
-// proves: VPC3C 5.1.3-09
+// proves: VPC3C 5.1.3-09, VPC3C 7.3.2-25
 TEST_P(ChecksStepBC, DX_Int_Port_does_nothing_with_SYNC_Ena) {
     Bench b = synchronous(recipe(), kIsochron | m2::dx_int_port);
     EXPECT_EQ(b.ask(kDx1234), kInputs);
@@ -244,6 +247,7 @@ TEST_P(ChecksStepBC, DX_Int_Port_does_nothing_with_SYNC_Ena) {
 
 // ---- Simple Sync Mode -----------------------------------------------------------------------------------------------
 
+// proves: VPC3C 7.3.2-08, VPC3C 7.3.2-10, VPC3C 7.3.2-31
 TEST_P(ChecksStepBC, in_Simple_Sync_Mode_pin_13_is_active_until_DX_Out_is_acknowledged) {
     Bench b = synchronous(recipe(), kSimpleSync);
     b.ask(kDx1234);
@@ -257,6 +261,7 @@ TEST_P(ChecksStepBC, in_Simple_Sync_Mode_pin_13_is_active_until_DX_Out_is_acknow
     EXPECT_TRUE(pin_13_high(b));
 }
 
+// proves: VPC3C 7.3.2-30
 TEST_P(ChecksStepBC, a_masked_DX_Out_does_not_show_on_pin_13) {
     Bench b = synchronous(recipe(), kSimpleSync);
     b.write_word(control::int_mask_reg_low, irq::dx_out);
@@ -303,7 +308,7 @@ Octets set_prm_isom(const Bench& b, std::uint8_t status_1) {
     return b.request(2, 0x5D, 0x3D, d);
 }
 
-// proves: VPC3C 7.3.2-06
+// proves: VPC3C 7.3.2-06, VPC3C 7.3.2-16..17, VPC3C 7.3.2-21..24
 TEST_P(ChecksStepBC, figure_7_18_IsoM_Req_with_its_block_needs_SYNC_Ena_and_Fail_Safe) {
     struct Row { std::uint8_t mode2, status_1; unsigned state; };
     for (const Row& row : {Row{kIsochron, 0xC0, kWaitCfg}, Row{kIsochron, 0x80, kWaitPrm}, Row{kSimpleSync, 0xC0, kWaitPrm}}) {
@@ -317,7 +322,7 @@ TEST_P(ChecksStepBC, figure_7_18_IsoM_Req_with_its_block_needs_SYNC_Ena_and_Fail
     }
 }
 
-// proves: VPC3C 7.3.2-07, E019
+// proves: VPC3C 7.3.2-07, VPC3C 7.3.2-27, E019
 TEST_P(ChecksStepBC, figure_7_19_a_slave_on_an_isochrone_bus_is_a_member_of_group_8) {
     Bench b = synchronous(recipe(), kSimpleSync);
     EXPECT_EQ(b.chip().state().group_ident, 0x80);

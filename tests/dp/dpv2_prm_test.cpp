@@ -36,7 +36,7 @@ Octets octets(const Encoded& size, const std::array<std::uint8_t, 256>& out) {
 
 constexpr std::array<DxbLink, 2> kLinks{DxbLink{9, 4, 1, 2, 0, 0}, DxbLink{125, 244, 0, 244, 0, 0}};
 
-// proves: VPC3C 7.3.1-04
+// proves: VPC3C 7.3.1-04, VPC3C 7.3.1-19
 TEST(DxbLinktable, figure_7_8_reads_back_as_it_was_written) {
     std::array<std::uint8_t, 256> out{};
     const Octets written = octets(encode_dxb(PrmBlockType::dxb_linktable, kLinks, out), out);
@@ -49,7 +49,7 @@ TEST(DxbLinktable, figure_7_8_reads_back_as_it_was_written) {
     EXPECT_EQ((*table)[1], kLinks[1]);
 }
 
-// proves: VPC3C 7.3.1-05
+// proves: VPC3C 7.3.1-05, VPC3C 7.3.1-21
 TEST(DxbSubscribertable, figure_7_9_has_a_place_for_the_sample_too) {
     const std::array<DxbLink, 1> links{DxbLink{9, 4, 1, 2, 3, 16}};
     std::array<std::uint8_t, 256> out{};
@@ -61,6 +61,7 @@ TEST(DxbSubscribertable, figure_7_9_has_a_place_for_the_sample_too) {
     EXPECT_EQ((*table)[0], links[0]);
 }
 
+// proves: VPC3C 7.3.1-20
 TEST(DxbTable, twenty_nine_links_are_the_most) {
     std::vector<DxbLink> links(29, kLinks[0]);
     std::array<std::uint8_t, 256> out{};
@@ -70,6 +71,18 @@ TEST(DxbTable, twenty_nine_links_are_the_most) {
     Octets thirty{5 + 4 * 30, 3, 0, 0, 1};
     thirty.resize(5 + 4 * 30, 1);
     EXPECT_EQ(DxbTable::of(block(thirty)).error(), DxbError::length);
+}
+
+// proves: VPC3C 7.3.1-22, E083
+TEST(DxbTable, twenty_nine_links_fit_into_a_subscribertable_too) {
+    const std::vector<DxbLink> links(29, DxbLink{9, 4, 1, 2, 3, 16});
+    std::array<std::uint8_t, 256> out{};
+    const Octets written = octets(encode_dxb(PrmBlockType::dxb_subscribertable, links, out), out);
+    EXPECT_EQ(written.size(), 5u + 6 * 29) << "octet 120 of figure 7-9 is in the middle of the twentieth entry";
+    const auto table = DxbTable::of(block(written));
+    ASSERT_TRUE(table);
+    ASSERT_EQ(table->size(), 29u);
+    EXPECT_EQ((*table)[28], links[28]);
 }
 
 TEST(DxbTable, a_block_that_is_none_is_refused_with_the_reason) {
@@ -97,7 +110,7 @@ TEST(DxbLink, plausibility_follows_the_reference) {
     EXPECT_EQ(encode_dxb(PrmBlockType::isom, kLinks, out).error(), DxbError::type);
 }
 
-// proves: VPC3C 7.3.1-06
+// proves: VPC3C 7.3.1-06, VPC3C 7.3.1-26..32
 TEST(DxbStatus, figure_7_10_starts_with_every_link_inactive) {
     std::array<std::uint8_t, 256> out{};
     ASSERT_EQ(encode_dxb_status(kLinks, out), 8u);
@@ -137,7 +150,7 @@ TEST(IsoMPrm, other_blocks_lengths_and_a_cycle_of_nothing_are_refused) {
 
 // ---- clock ------------------------------------------------------------------------------------------------------------
 
-// proves: VPC3C 7.3.3-03
+// proves: VPC3C 7.3.3-03, VPC3C 7.3.3-19..21, VPC3C 7.3.3-37..38, VPC3C 7.3.3-40..41, VPC3C 7.3.3-43..44
 TEST(ClockValue, figure_7_22_reads_back_as_it_was_written) {
     const ClockValue value{.time_event = NetworkTime::from_wire(0xC3123456, 0x80000000), .previous = NetworkTime::from_wire(0xC312344C, 0x80000000),
                            .offset_min = -570, .switching_soon = true, .summer_time = true, .resolution = ClockResolution::ms_100, .synchronised = false};
@@ -147,6 +160,7 @@ TEST(ClockValue, figure_7_22_reads_back_as_it_was_written) {
     EXPECT_EQ(*decode_clock_value(written), value);
 }
 
+// proves: VPC3C 7.3.3-37..44
 TEST(ClockValue, every_status_octet_pair_is_read) {
     Octets d(18);
     for (unsigned s1 = 0; s1 < 256; ++s1)
@@ -169,7 +183,7 @@ TEST(ClockValue, other_lengths_and_offsets_are_refused) {
     EXPECT_EQ(encode(ClockValue{}, std::span{out}.first(17)).error(), ClockError::no_room);
 }
 
-// proves: VPC3C 7.3.3-03
+// proves: VPC3C 7.3.3-18
 TEST(NetworkTime, goes_on_into_the_era_of_2036) {
     const NetworkTime last = NetworkTime::from_wire(0xFFFFFFFF, 0xFFFFFFFF);
     const NetworkTime next = NetworkTime::from_wire(0x00000000, 0);
@@ -191,7 +205,7 @@ TEST(NetworkTime, adds_and_subtracts) {
     EXPECT_EQ(t.plus({1, 0x80000000}), NetworkTime::from_wire(0xC3123458, 0));
 }
 
-// proves: VPC3C 7.3.3-02
+// proves: VPC3C 7.3.3-02, VPC3C 7.3.3-16..17
 TEST(TimeAr, figure_7_21_with_and_without_delay) {
     std::array<std::uint8_t, 256> out{};
     const TimeAr with{.interval = 1000, .delay = {0, 4295}, .has_delay = true}, without{.interval = 1000};

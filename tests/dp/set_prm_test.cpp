@@ -50,6 +50,7 @@ TEST(SetPrm, lengths_outside_7_to_244_are_refused) {
     EXPECT_EQ(dp::encode(big, room).error(), dp::SetPrmError::too_long);
 }
 
+// proves: VPC3C 6.2.2-04
 TEST(SetPrm, DPV1_octets_that_were_not_sent_read_as_zero) {
     const Octets octets{0x88, 2, 5, 11, 0x47, 0x11, 0, 0xC4};
     const auto prm = dp::decode_set_prm(octets);
@@ -62,6 +63,7 @@ TEST(SetPrm, DPV1_octets_that_were_not_sent_read_as_zero) {
     EXPECT_EQ(dp::t_wd_ms(prm->wd, prm->wd_base()), 10u);
 }
 
+// proves: VPC3C 7.1-01, VPC3C 6.2.2-04
 TEST(SetPrm, the_bit_table_names_every_defined_bit_once) {
     std::array<unsigned, 10> masks{};
     for (const auto& bit : dp::kPrmBits) {
@@ -105,6 +107,7 @@ TEST(Watchdog, alarm_modes_limit_the_outstanding_alarms) {
     for (std::uint8_t mode = 0; mode < 8; ++mode) EXPECT_EQ(dp::alarm_limit(mode), expected[mode]);
 }
 
+// proves: VPC3C 7.1-05, VPC3C 7.1-07
 TEST(StructuredPrm, blocks_are_walked_with_type_slot_and_data) {
     const Octets octets{5, 0x81, 0, 0, 0xAA, 9, 3, 0, 0, 1, 9, 4, 1, 2, 8, 2, 4, 0x18, 1, 0, 0, 0};
     dp::PrmBlockWalker walker{octets};
@@ -122,6 +125,7 @@ TEST(StructuredPrm, blocks_are_walked_with_type_slot_and_data) {
     EXPECT_EQ(walker.error(), dp::PrmBlockError::none);
 }
 
+// proves: VPC3C 7.1-05
 TEST(StructuredPrm, bad_lengths_stop_the_walk_at_the_bad_block) {
     for (unsigned length = 0; length < 256; ++length) {
         Octets octets{5, 0x81, 0, 0, 0xAA, static_cast<std::uint8_t>(length), 1, 2, 3, 4, 5};

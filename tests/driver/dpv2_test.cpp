@@ -37,6 +37,7 @@ struct V2App : Events {
     std::vector<Octets> samples;
     std::vector<ClockEvent> clock_events;
     int link_errors = 0, entered = 0, dx = 0, baud = -1;
+    std::uint8_t link_octets_in_time = 0;  ///< R_Len_DXB_Link_Buf when New_Prm_Data had not been acknowledged yet
 
     std::uint16_t own_interrupts() const { return DxbSubscriber<ChipBus>::kInterrupts | (clock ? SlaveClock<ChipBus>::kInterrupts : 0); }
     std::uint16_t more_mode0() const { return clock ? SlaveClock<ChipBus>::kMode0 : std::uint16_t{0}; }
@@ -54,7 +55,9 @@ struct V2App : Events {
     }
     Verdict set_prm(const dp::SetPrm& prm) {
         dxb->forget();
-        return blocks(prm.behind_dpv1_status(), prm.wd_on());
+        const Verdict verdict = blocks(prm.behind_dpv1_status(), prm.wd_on());
+        if ((chip->state().irr & regmap::interrupt::new_prm_data) != 0) link_octets_in_time = chip->peek(regmap::org::r_len_dxb_link_buf);
+        return verdict;
     }
     Verdict blocks(std::span<const std::uint8_t> octets, bool wd_on) {
         dp::PrmBlockWalker walker{octets};
@@ -128,6 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Each, DriverDpv2, ::testing::ValuesIn(kV2Kinds), [](con
 
 const Octets kTwoLinks{13, 3, 0, 0, 1, 9, 4, 1, 2, 10, 1, 0, 1};
 
+// proves: VPC3C 7.3.1-15..17, VPC3C 7.3.1-23..24, VPC3C 7.3.1-36
 TEST_P(DriverDpv2, takes_links_from_the_parameters_and_hands_their_samples_to_the_application) {
     t.to_data_exch_with(t.v2_config(), {29, 8}, prm_with(kTwoLinks));
     ASSERT_EQ(t.app.entered, 1);
@@ -144,6 +148,12 @@ TEST_P(DriverDpv2, takes_links_from_the_parameters_and_hands_their_samples_to_th
     EXPECT_EQ(Octets(status.begin(), status.begin() + 8), (Octets{8, 0x83, 0, 0, 9, dp::kDataExist, 10, dp::kDataExist}));
 }
 
+// proves: VPC3C 7.3.1-25
+TEST_P(DriverDpv2, has_the_links_in_their_buffers_before_it_acknowledges_the_parameters) {
+    t.to_data_exch_with(t.v2_config(), {29, 8}, prm_with(kTwoLinks));
+    EXPECT_EQ(t.app.link_octets_in_time, 8);
+}
+
 TEST_P(DriverDpv2, tells_of_broken_links) {
     t.to_data_exch_with(t.v2_config(), {29, 8}, prm_with(kTwoLinks));
     t.broadcast(0x08, 9, {0x11, 0x22, 0x33, 0x44});
@@ -155,6 +165,7 @@ TEST_P(DriverDpv2, tells_of_broken_links) {
     EXPECT_EQ(t.app.dxb->link_status(0), 0);
 }
 
+// proves: VPC3C 7.3.1-15, VPC3C 7.3.1-21, VPC3C 7.3.1-23
 TEST_P(DriverDpv2, takes_links_of_a_subscribertable_without_its_destinations) {
     t.to_data_exch_with(t.v2_config(), {29, 8}, prm_with({11, 7, 0, 0, 1, 9, 4, 1, 3, 16, 2}));
     t.broadcast(0x08, 9, {0x11, 0x22, 0x33, 0x44});
@@ -164,6 +175,7 @@ TEST_P(DriverDpv2, takes_links_of_a_subscribertable_without_its_destinations) {
     EXPECT_EQ(t.app.dxb->links()[0].offset_data_area, 16);
 }
 
+// proves: VPC3C 7.3.1-18
 TEST_P(DriverDpv2, refuses_links_that_can_never_work) {
     struct Row { Octets prm; dp::DxbError error; };
     Octets thirty{125, 3, 0, 0, 1};
@@ -223,6 +235,7 @@ TEST_P(DriverDpv2, an_isochronous_application_measures_its_SYNCHs) {
     EXPECT_NEAR(static_cast<double>(t.app.meter.jitter()), 20'000.0, 100.0);
 }
 
+// proves: VPC3C 7.3.2-10
 TEST_P(DriverDpv2, in_Simple_Sync_Mode_outputs_are_told_of_at_the_SYNCH) {
     t.app.isochron.simple_sync = true;
     Octets prm = prm_with({}, true, 0x00);
@@ -248,6 +261,7 @@ void time_event(V2& t, const dp::NetworkTime& now, const dp::NetworkTime& before
     t.run(1_ms);
 }
 
+// proves: VPC3C 7.3.3-13, VPC3C 7.3.3-15, VPC3C 7.3.3-49
 TEST_P(DriverDpv2, the_clock_of_the_slave_follows_the_time_master) {
     t.to_data_exch_with(t.v2_config(), {}, prm_with({14, 8, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0, 0}), true);
     ASSERT_EQ(t.app.entered, 1);
@@ -260,6 +274,32 @@ TEST_P(DriverDpv2, the_clock_of_the_slave_follows_the_time_master) {
     const std::int64_t elapsed = t.app.clock->now(local).minus_ns(kNoon);
     EXPECT_LT(std::abs(elapsed - core::to_ns(t.chip.now() - event)), 2'000) << "two microseconds";
     EXPECT_TRUE(t.app.clock->value().synchronised);
+}
+
+// proves: VPC3C 7.3.3-14..15
+TEST_P(DriverDpv2, CS_Delay_Time_is_part_of_the_system_time) {
+    // 2^26 / 2^32 s = 15.625 ms
+    t.to_data_exch_with(t.v2_config(), {}, prm_with({14, 8, 0, 0, 0, 100, 0, 0, 0, 2, 4, 0, 0, 0}), true);
+    const Ticks event = t.chip.now() + 126 * fdl::baud(fdl::BaudCode::mbit_1_5).bit;
+    time_event(t, kNoon, {});
+    const auto local = static_cast<std::uint64_t>(core::to_ns(t.chip.now()));
+    const std::int64_t expected = 2'015'625'000 + core::to_ns(t.chip.now() - event);
+    EXPECT_LT(std::abs(t.app.clock->now(local).minus_ns(kNoon) - expected), 2'000);
+}
+
+TEST_P(DriverDpv2, the_clock_learns_its_rate_unless_it_is_told_not_to) {
+    for (const bool correct : {true, false}) {
+        V2 other{GetParam()};
+        other.to_data_exch_with(other.v2_config(), {}, prm_with({6, 8, 0, 0, 0, 100}, false), true);
+        other.app.clock->correct_rate(correct);
+        const Ticks begin = other.chip.now();
+        for (int i = 0; i < 3; ++i) {  // the time master's second is 100 ppm shorter than that of the chip
+            other.run(begin + 1_s * i - other.chip.now());
+            time_event(other, kNoon.plus_us(static_cast<std::uint64_t>(i) * 999'900), {});
+        }
+        EXPECT_EQ(other.app.clock->rate_known(), correct);
+        EXPECT_NEAR(other.app.clock->rate_ppb(), correct ? -100'000.0 : 0.0, 2'000.0);
+    }
 }
 
 TEST_P(DriverDpv2, the_clock_counts_violations_and_goes_on) {

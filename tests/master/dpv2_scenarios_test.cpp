@@ -72,6 +72,7 @@ struct Heard {
     void add(const Dpv2Station::Received& r) { samples += r.samples, misplaced += r.misplaced, lost += r.lost; }
 };
 
+// proves: VPC3C 7.3.1-01..02
 TEST(DpV2Scenario, a_subscriber_with_29_links_hears_every_sample_of_29_publishers) {
     Plant plant{{}};
     std::vector<dp::DxbLink> links;
@@ -98,6 +99,7 @@ TEST(DpV2Scenario, a_subscriber_with_29_links_hears_every_sample_of_29_publisher
                 static_cast<unsigned long long>(heard.misplaced), static_cast<long long>(core::to_ns(subscriber.oldest)));
 }
 
+// proves: VPC3C 7.3.1-01
 TEST(DpV2Scenario, one_publisher_is_heard_by_29_subscribers) {
     Plant plant{{}};
     plant.plug({.address = 10}, {}, true);
@@ -179,7 +181,7 @@ void print(const char* what, const Spread& s) {
 const std::vector<Ticks> kSamePlace(8);
 const std::vector<std::int32_t> kNoDrift(8);
 
-// proves: VPC3C 7.3.2-01, VPC3C 7.3.2-02
+// proves: VPC3C 7.3.2-01..02
 TEST(DpV2Scenario, without_drift_the_SYNC_edges_of_eight_drives_fall_on_the_same_tick) {
     const Spread s = drives(kNoDrift, kSamePlace, 500);
     print("no drift", s);
@@ -251,7 +253,7 @@ ClockError clock_error(std::int32_t ppb, Ticks interval, bool rate) {
     return error;
 }
 
-// proves: VPC3C 7.3.3-01
+// proves: VPC3C 7.3.3-01, VPC3C 7.3.3-49
 TEST(DpV2Scenario, a_slave_clock_follows_the_time_master_for_30_minutes) {
     constexpr std::int32_t kDrift = 100'000;
     const Ticks interval = 10_s;

@@ -53,7 +53,7 @@ struct Rig {
     Tape tape;
 };
 
-// proves: VPC3C 7.3.1-03
+// proves: VPC3C 7.3.1-03, VPC3C 7.3.1-14
 TEST(MasterDpv2, polls_a_publisher_with_function_code_7_and_takes_its_broadcast) {
     Rig r{{}, true};
     r.line.run(10_ms);
@@ -73,7 +73,7 @@ TEST(MasterDpv2, polls_other_slaves_as_ever) {
     EXPECT_FALSE(r.tape.with_fc(0x5D).empty());
 }
 
-// proves: VPC3C 7.3.2-01
+// proves: VPC3C 7.3.2-01, VPC3C 7.3.2-13
 TEST(MasterDpv2, an_isochronous_cycle_is_SYNCH_cyclic_part_acyclic_part_token_and_spare_time) {
     master::MasterConfig config;
     config.isochron.cycle = 1_ms;
@@ -133,7 +133,7 @@ TEST(MasterDpv2, the_same_seed_gives_the_same_jitter) {
     EXPECT_NE(times(5), times(9));
 }
 
-// proves: VPC3C 7.3.3-01, VPC3C 7.3.3-03
+// proves: VPC3C 7.3.3-07..08, VPC3C 7.3.3-10
 TEST(MasterDpv2, the_time_master_says_when_its_Time_Event_had_ended) {
     master::MasterConfig config;
     const dp::NetworkTime start = dp::NetworkTime::from_wire(0xC3000000, 0);

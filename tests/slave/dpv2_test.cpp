@@ -95,6 +95,7 @@ struct Rig {
     Told told;
 };
 
+// proves: VPC3C 7.3.1-15, VPC3C 7.3.1-17
 TEST(VirtualSlaveDpv2, a_subscriber_takes_links_and_hands_samples_over) {
     Rig r{kSubscriber};
     ASSERT_TRUE(r.bring_up(kLink));
@@ -123,7 +124,8 @@ Octets ext_diag(Rig& r) {
     return d.size() > 6 ? Octets(d.begin() + 6, d.end()) : Octets{};
 }
 
-// proves: VPC3C 7.3.1-06
+// proves: VPC3C 7.2.2-04
+// proves: VPC3C 7.3.1-28..29
 TEST(VirtualSlaveDpv2, a_broken_link_stands_in_the_diagnosis_until_all_links_are_active_again) {
     Rig r{kSubscriber};
     ASSERT_TRUE(r.bring_up(kTwoLinks));
@@ -147,7 +149,7 @@ TEST(VirtualSlaveDpv2, a_broken_link_stands_in_the_diagnosis_until_all_links_are
     EXPECT_EQ(r.slave.dp_state(), chip::DpState::data_exch);
 }
 
-// proves: VPC3C 7.3.1-06
+// proves: VPC3C 7.3.1-26..28
 TEST(VirtualSlaveDpv2, DXB_Link_Status_stands_behind_the_diagnosis_of_the_process_and_is_no_fault) {
     Rig r{kSubscriber};
     ASSERT_TRUE(r.bring_up(kLink));
@@ -180,6 +182,36 @@ TEST(VirtualSlaveDpv2, DXB_Link_Status_goes_with_its_links_and_is_left_out_witho
     EXPECT_EQ(ext_diag(r), kNoBlocks);
 }
 
+// proves: VPC3C 7.1-03
+TEST(VirtualSlaveDpv2, blocks_are_looked_for_only_with_Prm_Structure) {
+    Rig r{kSubscriber};
+    ASSERT_TRUE(r.bring_up(kLink, 0xC0, 0x00));
+    EXPECT_TRUE(r.slave.links().empty()) << "user parameters that happen to look like a link table";
+    ASSERT_TRUE(r.bring_up(kLink, 0xC0, 0x08));
+    EXPECT_EQ(r.slave.links().size(), 1u);
+}
+
+// proves: VPC3C 7.1-07, VPC3C 7.3.1-15
+TEST(VirtualSlaveDpv2, links_may_come_with_Set_Ext_Prm_which_consists_of_blocks_only) {
+    const auto with_ext_prm = [](Rig& r, const Octets& octets) {
+        r.master.set_prm({0xC0, 0x00, 0x00});
+        r.master.run(1_ms);
+        r.master.request(53, octets);
+        r.master.run(1_ms);
+        r.master.chk_cfg({0x31});
+        r.master.run(1_ms);
+        return r.slave.dp_state() == chip::DpState::data_exch;
+    };
+    const std::string abilities = std::string{kSubscriber} + "X_Prm_SAP_supp = 1\nX_Max_User_Prm_Data_Len = 100\n";
+    Rig good{abilities}, bad{abilities};
+    ASSERT_TRUE(with_ext_prm(good, kLink));
+    ASSERT_EQ(good.slave.links().size(), 1u);
+    good.broadcast(9, 0x08, {0x11, 0x22, 0x33, 0x44});
+    EXPECT_EQ(good.told.samples, (std::vector<Octets>{{9, 0x22, 0x33}}));
+    EXPECT_FALSE(with_ext_prm(bad, {1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(bad.master.diag()[0] & 0x40, 0x40) << "Prm_Fault: these are no blocks";
+}
+
 TEST(VirtualSlaveDpv2, links_that_the_GSD_has_no_room_for_are_refused) {
     for (const Octets& bad : {Octets{25, 3, 0, 0, 1, 9, 4, 1, 2, 10, 4, 1, 2, 11, 4, 1, 2, 12, 4, 1, 2, 13, 4, 1, 2}, Octets{9, 3, 0, 0, 1, 9, 40, 0, 17},
                               Octets{9, 3, 0, 0, 1, 126, 4, 1, 2}, Octets{9, 3, 0, 0, 1, 9}}) {
@@ -198,6 +230,7 @@ TEST(VirtualSlaveDpv2, Publisher_supp_decides_whether_it_can_be_a_publisher) {
     EXPECT_EQ(answer[4], 0x7F) << "to everybody";
 }
 
+// proves: VPC3C 7.3.2-20..21
 TEST(VirtualSlaveDpv2, an_isochronous_drive_tells_of_every_SYNCH) {
     Rig r{"Isochron_Mode_supp = 1\n"};
     Octets block(dp::kIsoMBlock);
@@ -217,7 +250,7 @@ TEST(VirtualSlaveDpv2, an_isochronous_drive_tells_of_every_SYNCH) {
 
 // ---- Simple Sync Mode -----------------------------------------------------------------------------------------------
 
-// proves: VPC3C 7.3.2-03
+// proves: VPC3C 7.3.2-03, VPC3C 7.3.2-10..12
 TEST(VirtualSlaveDpv2, in_Simple_Sync_Mode_outputs_wait_for_the_SYNCH) {
     Rig r{"", {.simple_sync = true}};
     r.master.group = 0x80;
@@ -267,6 +300,7 @@ TEST(VirtualSlaveDpv2, Simple_Sync_Mode_is_refused_where_it_means_nothing) {
     EXPECT_NO_THROW(VirtualSlave(station(""), simple));
 }
 
+// proves: VPC3C 7.3.3-14
 TEST(VirtualSlaveDpv2, a_slave_with_Time_Sync_follows_the_time) {
     Rig r{"Time_Sync_supp = 1\n"};
     ASSERT_TRUE(r.bring_up({6, 8, 0, 0, 0x03, 0xE8}));
