@@ -32,11 +32,9 @@ int digit(char c) {
 std::optional<fdl::BaudCode> parse_baud(std::string_view text) {
     const auto number = take_number(text);
     if (!number) return std::nullopt;
-    double scale = 1;
-    if (text == "M") scale = 1e6;
-    else if (text == "k") scale = 1e3;
-    else if (!text.empty()) return std::nullopt;
-    else if (*number < 1000) scale = 1e3;  // as GSD keywords have it: 19.2
+    if (text != "M" && text != "k" && !text.empty()) return std::nullopt;
+    const bool kilo = text == "k" || (text.empty() && *number < 1000);  // 19.2, as GSD keywords have it
+    const double scale = text == "M" ? 1e6 : kilo ? 1e3 : 1;
     const double rate = *number * scale;
     if (rate > 12e6) return std::nullopt;
     return fdl::baud_from_bits_per_s(static_cast<std::uint32_t>(std::lround(rate)));

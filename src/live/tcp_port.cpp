@@ -70,7 +70,7 @@ bool send_to(int fd, std::span<const std::uint8_t> octets) {
 
 }  // namespace
 
-TcpListenPort::TcpListenPort(std::string host, std::uint16_t port) {
+TcpListenPort::TcpListenPort(const std::string& host, std::uint16_t port) {
     const Addresses list = resolve(host, port, AI_PASSIVE);
     int code = 0;
     for (const addrinfo* a = list.get(); a != nullptr && !listener_; a = a->ai_next) {

@@ -14,7 +14,7 @@ namespace dpchip::live {
 
 class TcpListenPort final : public Port {
 public:
-    TcpListenPort(std::string host, std::uint16_t port);
+    TcpListenPort(const std::string& host, std::uint16_t port);
 
     Medium medium() const override { return Medium::tcp; }
     std::string place() const override { return place_; }

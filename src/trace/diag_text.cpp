@@ -48,7 +48,7 @@ std::string channel_text(const dp::DiagBlock& block, std::uint8_t station, const
 }
 
 std::string block_text(const dp::DiagBlock& block, std::uint8_t station, const DeviceTexts* texts) {
-    const std::string octets = hex_row(block.octets);
+    std::string octets = hex_row(block.octets);
     switch (block.kind) {
     case dp::DiagBlockKind::device: {
         const std::string words = device_text(block, station, texts);

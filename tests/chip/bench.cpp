@@ -14,7 +14,6 @@
 namespace dpchip::bench {
 
 using namespace core::literals;
-namespace status = regmap::status;
 
 namespace {
 
