@@ -168,6 +168,8 @@ public:
     void start();
     void go_offline();
     ChipUnderTest& chip() { return chip_; }
+    /// Path::bits: what stands between the chip and the line.
+    pins::Uart<core::RingTrace>& uart() { return uart_; }
     /// Called after every advance and every character: for tests that meddle with the chip at odd moments.
     void set_meddler(std::function<void(ChipUnderTest&)> meddler) { meddler_ = std::move(meddler); }
     /// Longest single advance; kNever: from event to event.

@@ -314,12 +314,13 @@ TEST_P(Checks, peek_shows_what_read_would_return_and_changes_nothing) {
     }
 }
 
-TEST_P(Checks, whole_telegrams_and_single_characters_have_the_same_effects) {
-    Recipe characters = recipe(), telegrams = recipe();
+TEST_P(Checks, whole_telegrams_single_characters_and_bits_have_the_same_effects) {
+    Recipe characters = recipe(), telegrams = recipe(), bits = recipe();
     characters.path = Path::characters;
     telegrams.path = Path::telegrams;
+    bits.path = Path::bits;
     for (const std::uint64_t seed : kSeeds) {
-        Bench a{telegrams, Stage::p0}, b{characters, Stage::p0};
+        Bench a{telegrams, Stage::p0}, b{characters, Stage::p0}, c{bits, Stage::p0};
         const std::vector<Deed> deeds = random_deeds(seed, kDeeds);
         for (std::size_t i = 0; i < deeds.size(); ++i) {
             SCOPED_TRACE(trace_of(seed, i, deeds[i]));
@@ -327,13 +328,23 @@ TEST_P(Checks, whole_telegrams_and_single_characters_have_the_same_effects) {
             if (damaged) {  // a damaged telegram always comes in characters
                 a.tell({deeds[i].octets, {{0, fdl::fault_parity}}, {}});
                 b.tell({deeds[i].octets, {{0, fdl::fault_parity}}, {}});
-                ASSERT_EQ(a.listen_text(), b.listen_text());
+                c.tell({deeds[i].octets, {{0, fdl::fault_parity}}, {}});
+                const std::string answer = a.listen_text();
+                ASSERT_EQ(answer, b.listen_text());
+                ASSERT_EQ(answer, c.listen_text());
             } else {
-                ASSERT_EQ(perform(a, deeds[i]), perform(b, deeds[i]));
+                const auto done = perform(a, deeds[i]);
+                ASSERT_EQ(done, perform(b, deeds[i]));
+                ASSERT_EQ(done, perform(c, deeds[i]));
             }
             ASSERT_EQ(a.now(), b.now());
             ASSERT_EQ(a.last_answer().start, b.last_answer().start);
+            if (c.last_answer().start > c.request_end()) {  // later by where the grid lies, never by more than it takes
+                ASSERT_EQ(a.last_answer().start - a.request_end(), c.last_answer().start - c.request_end());
+            }
             ASSERT_EQ(a.ram(0, a.traits().ram_bytes), b.ram(0, b.traits().ram_bytes));
+            const Octets all = a.ram(org::first, a.traits().ram_bytes - org::first);
+            ASSERT_EQ(all, c.ram(org::first, c.traits().ram_bytes - org::first));
         }
     }
 }
