@@ -207,6 +207,40 @@ constexpr const char* abort_reason_name(std::uint8_t reason) {
     return "reserved";
 }
 
+/// Reasons of instance FDL: how the layer below ended a request.
+enum class FdlReason : std::uint8_t {
+    ue = 1,    ///< user error
+    rr = 2,    ///< no resource
+    rs = 3,    ///< SAP not activated
+    nr = 9,    ///< no data
+    dh = 10,   ///< data, high priority
+    lr = 11,   ///< the own station has no resource
+    rdl = 12,  ///< data, and no resource
+    rdh = 13,  ///< the same, high priority
+    ds = 14,   ///< the own station is not in the ring
+    na = 15,   ///< no answer
+};
+
+/// Words for a reason; of instance user there are none: "reason of the user".
+constexpr const char* abort_reason_name(AbortInstance instance, std::uint8_t reason) {
+    if (instance == AbortInstance::msac_c2) return abort_reason_name(reason);
+    if (instance == AbortInstance::user) return "reason of the user";
+    if (instance != AbortInstance::fdl) return "reserved";
+    switch (static_cast<FdlReason>(reason)) {
+    case FdlReason::ue: return "user error (UE)";
+    case FdlReason::rr: return "no resource (RR)";
+    case FdlReason::rs: return "SAP not activated (RS)";
+    case FdlReason::nr: return "no data (NR)";
+    case FdlReason::dh: return "data of high priority (DH)";
+    case FdlReason::lr: return "no local resource (LR)";
+    case FdlReason::rdl: return "data, no resource (RDL)";
+    case FdlReason::rdh: return "data of high priority, no resource (RDH)";
+    case FdlReason::ds: return "not in the ring (DS)";
+    case FdlReason::na: return "no answer (NA)";
+    }
+    return "reserved";
+}
+
 struct Abort {
     std::uint8_t subnet{};
     AbortInstance instance{AbortInstance::msac_c2};

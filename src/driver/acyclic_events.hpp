@@ -79,6 +79,11 @@ constexpr InitiateAnswer accept_connection(const dp::InitiateFeatures& features 
 constexpr InitiateAnswer refuse_connection(std::uint8_t reason) {
     return {.kind = InitiateAnswer::Kind::refused, .abort = {dp::AbortSubnet::none, dp::AbortInstance::user, reason}};
 }
+/// A reason of MSAC_C2 that the application finds: IA for an additional address that it does not know, RES when it has no
+/// room for another connection.
+constexpr InitiateAnswer refuse_connection(dp::AbortReason reason) {
+    return {.kind = InitiateAnswer::Kind::refused, .abort = dp::Abort{reason}};
+}
 constexpr InitiateAnswer decide_later() { return {.kind = InitiateAnswer::Kind::later}; }
 
 /// Who ended a connection, with the Abort that was sent or received.

@@ -54,6 +54,7 @@ enum class AuxUse : std::uint8_t {
 enum class CfgPolicy : std::uint8_t {
     plugged,       ///< refuse
     follow_master, ///< take it, as long as its lengths fit into max_inputs and max_outputs
+    as_parameterised, ///< refuse, unless Check_Cfg_Mode of DPV1_Status_2 asks for the user's own check: then follow_master
 };
 
 enum class UserTimer : std::uint8_t { off, ms_1, ms_10 };
@@ -76,7 +77,7 @@ struct AcyclicConfig {
     std::uint8_t connections = 0;      ///< class-2 connections, 0..49: C2_Max_Count_Channels
     std::uint8_t ms2_max_data = 240;   ///< longest record there, 4..240: C2_Max_Data_Len
     std::uint8_t max_initiate = 52;    ///< longest Initiate.req, 20..244: Max_Initiate_PDU_Length
-    std::uint16_t send_timeout = 0;    ///< least Send_Timeout granted, 10 ms; 0: by baud rate
+    std::uint16_t send_timeout = 0;    ///< least Send_Timeout granted, 10 ms; the rate's own when that is longer
     std::uint8_t alarms = 0;           ///< alarm types that are raised: the bits of DPV1_Status_2
     std::uint8_t alarm_sequence = 0;   ///< alarms outstanding at a time, 2..32: Alarm_Sequence_Mode_Count; 0: one of each type
     std::uint8_t max_alarm = 0;        ///< longest alarm or status block, header included, 4..63; room for it is kept free behind

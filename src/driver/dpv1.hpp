@@ -148,6 +148,8 @@ public:
     void fetched() { alarms_.fetched(); }
 
     bool ms1_open() const { return ms1_open_; }
+    /// Check_Cfg_Mode of the present parameters.
+    bool user_checks_cfg() const { return status_.enabled() && (status_.status_2 & dp::kCheckCfgMode) != 0; }
     C2State connection(std::size_t n) const { return ms2_.state(n); }
 
 private:

@@ -3,6 +3,7 @@
 // 10.13, 10.14).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -105,6 +106,7 @@ public:
     }
 
     bool complete(const Handle& h, const RecordAnswer& answer, std::span<const std::uint8_t> data) {
+        if (wrong_service(h, RelationState::Waiting::initiate)) return false;
         const std::uint8_t n = find(h, RelationState::Waiting::record);
         if (n == kNone || answer.kind == RecordAnswer::Kind::later) return false;
         std::array<std::uint8_t, dp::kRecordHeader> head{};
@@ -116,6 +118,7 @@ public:
         return true;
     }
     bool complete(const Handle& h, const InitiateAnswer& answer) {
+        if (wrong_service(h, RelationState::Waiting::record)) return false;
         const std::uint8_t n = find(h, RelationState::Waiting::initiate);
         if (n == kNone || answer.kind == InitiateAnswer::Kind::later) return false;
         std::array<std::uint8_t, dp::kMaxInitiatePdu> pdu{};  // scratch_ may be in use when the application calls
@@ -140,7 +143,7 @@ private:
     static std::uint8_t channel_of(std::uint8_t n) { return static_cast<std::uint8_t>(channel::connection0 + n); }
     static std::uint8_t sap(std::uint8_t n) { return channel_sap(channel_of(n)); }
     std::uint16_t own_send_timeout() const {
-        return config_->send_timeout != 0 ? config_->send_timeout : dp::min_send_timeout(baud_code_);
+        return std::max(config_->send_timeout, dp::min_send_timeout(baud_code_));
     }
     static std::uint32_t milliseconds(const Connection& c) { return c.send_timeout * dp::kSendTimeoutUnit; }
 
@@ -152,6 +155,14 @@ private:
                 return n;
         }
         return kNone;
+    }
+
+    /// The application answers with another service than it was asked for: the connection ends with IV.
+    bool wrong_service(const Handle& h, RelationState::Waiting asked) {
+        const std::uint8_t n = find(h, asked);
+        if (n == kNone) return false;
+        abort(n, dp::Abort{dp::AbortReason::invalid_service}, ClosedBy::driver);
+        return true;
     }
 
     // ---- resource manager

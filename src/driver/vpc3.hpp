@@ -105,7 +105,7 @@ public:
     /// Time for the timeouts of class-2 connections, when there is no User_Timer_Clock. From the main program.
     void tick(std::uint32_t ms) requires(D::present);
     /// Answers a request that was put off with answer_later(). `data`: what a DS_Read or Data_Transport gives. False
-    /// when nobody waits for it any more.
+    /// when nobody waits for it any more. With the wrong one of the two answers a class-2 connection ends: Abort IV.
     bool complete(const Handle& handle, const RecordAnswer& answer, std::span<const std::uint8_t> data = {}) requires(D::present);
     bool complete(const Handle& handle, const InitiateAnswer& answer) requires(D::present);
     /// Ends the connection on this SAP with an Abort of instance user. False when there is none.
@@ -196,6 +196,7 @@ private:
     Octets received(std::uint16_t pointer_cell, std::uint16_t length_cell);
     bool judge_prm(Octets octets);
     bool judge_cfg(Octets octets);
+    bool may_differ() const;
     bool take_cfg(Octets octets, bool plugged);
     bool is_read_cfg(Octets octets);
     void adapt_lengths(std::uint8_t inputs, std::uint8_t outputs);

@@ -168,9 +168,17 @@ template <BusPort Bus, class App, std::size_t N, class D>
 bool Vpc3<Bus, App, N, D>::judge_cfg(Octets octets) {
     if (config_.prm_rules.min_octets != 0 && !prm_accepted_) return false;
     const bool plugged = dp::cfg_matches(config_.cfg, octets);
-    if (dp_state() != kDataExch) return (plugged || config_.cfg_policy == CfgPolicy::follow_master) && take_cfg(octets, plugged);
+    if (dp_state() != kDataExch) return (plugged || may_differ()) && take_cfg(octets, plugged);
     const bool same = following_ ? is_read_cfg(octets) : plugged;  // only the same one may be confirmed now (6.2.3)
     return same && app_->chk_cfg(octets, inputs_, outputs_) == Verdict::accept;
+}
+
+/// Whether a Chk_Cfg may differ from the plugged modules.
+template <BusPort Bus, class App, std::size_t N, class D>
+bool Vpc3<Bus, App, N, D>::may_differ() const {
+    if (config_.cfg_policy == CfgPolicy::follow_master) return true;
+    if constexpr (kDpv1) return config_.cfg_policy == CfgPolicy::as_parameterised && acyclic_.user_checks_cfg();
+    return false;
 }
 
 /// Makes `octets`, or the plugged configuration they ask for, the present one: lengths and Read_Cfg_Buf.

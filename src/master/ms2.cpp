@@ -19,6 +19,8 @@ constexpr Ticks kRetryInterval = core::milliseconds(1);
 
 dp::Abort own(AbortReason reason) { return {dp::AbortSubnet::local, dp::AbortInstance::msac_c2, core::to_underlying(reason)}; }
 
+dp::Abort of_fdl(std::uint8_t reason) { return {dp::AbortSubnet::local, dp::AbortInstance::fdl, reason}; }
+
 }  // namespace
 
 const char* name(Ms2State state) {
@@ -39,7 +41,12 @@ const char* name(Ms2State state) {
 // ---- what the user wants -----------------------------------------------------------------------------------------
 
 bool Ms2::open() {
-    if (state_ != Ms2State::closed || busy()) return false;
+    if (busy()) return false;
+    if (closing_ || state_ == Ms2State::aborting) {
+        finish(ServiceResult::by_abort(Kind::ended, own(AbortReason::waiting_for_confirmation)));
+        return true;
+    }
+    if (state_ != Ms2State::closed) return false;
     const dp::InitiateReq req{config_.send_timeout, config_.features, {0, config_.source}, {0, config_.destination}};
     const auto size = dp::encode(req, initiate_);
     initiate_size_ = size ? *size : 0;
@@ -142,7 +149,9 @@ void Ms2::shut(const ServiceResult& why) {
     state_ = Ms2State::closed;
     closing_ = wanted_ = false;
     ending_ = why;
-    if (busy()) finish(why);
+    if (why.kind == Kind::unanswered) ending_.abort = of_fdl(core::to_underlying(dp::FdlReason::na));
+    if (why.kind == Kind::not_taken) ending_.abort = of_fdl(core::to_underlying(why.response));  // the codes are the same
+    if (busy()) finish(ending_);
 }
 
 // ---- what comes back ---------------------------------------------------------------------------------------------
@@ -222,6 +231,12 @@ void Ms2::initiated(std::span<const std::uint8_t> pdu, Ticks now) {
         return shut(ServiceResult::breaks(Kind::bad_answer, rm ? dp::AcyclicError::function : rm.error()));
     sap_ = rm->sap;
     send_timeout_ = dp::agreed_send_timeout(rm->send_timeout, config_.send_timeout);
+    if (config_.longest_send_timeout != 0 && send_timeout_ > config_.longest_send_timeout) {
+        const dp::Abort abort = own(AbortReason::send_timeout_too_small);
+        break_off(abort, ServiceResult::by_abort(Kind::ended, abort), now);
+        again_ = now + config_.settle;
+        return;
+    }
     enter(Ms2State::connecting, now);
     again_ = now + config_.settle;
     patient_until_ = again_ + config_.patience;

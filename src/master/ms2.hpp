@@ -17,6 +17,7 @@ namespace dpchip::master {
 struct Ms2Config {
     std::uint8_t address{};                       ///< the slave's
     std::uint16_t send_timeout = 1;               ///< asked for, 10 ms; the slave's least one holds when it is longer
+    std::uint16_t longest_send_timeout = 0;       ///< a slave that wants more is told STO, and there is no connection; 0: any
     dp::InitiateFeatures features{};
     std::array<std::uint8_t, 2> source{};         ///< API and SCL of this end
     std::array<std::uint8_t, 2> destination{};    ///< API and SCL of the other end
@@ -44,7 +45,8 @@ class Ms2 : public Relation {
 public:
     explicit Ms2(const Ms2Config& config) : Relation{config.address}, config_{config} {}
 
-    /// Opens the connection: a service like others, see result(). False unless it is closed.
+    /// Opens the connection: a service like others, see result(). False when it is open, or a service is under way. While
+    /// an Abort waits for its confirmation it ends at once: reason OC.
     bool open();
     /// Data_Transport of 0..240 octets; data() is what comes back.
     bool transport(std::uint8_t slot, std::uint8_t index, std::span<const std::uint8_t> data);

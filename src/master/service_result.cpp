@@ -47,8 +47,8 @@ const char* response_text(fdl::Response r) {
 
 std::string text(const dp::Abort& a) {
     const auto instance_reason = static_cast<std::uint8_t>(unsigned{core::to_underlying(a.instance)} << 4 | (a.reason & 15u));
-    const std::string reason = a.instance == dp::AbortInstance::msac_c2 ? dp::abort_reason_name(a.reason)
-                                                                        : "reason " + std::to_string(a.reason);
+    const std::string reason = a.instance == dp::AbortInstance::user ? "reason " + std::to_string(a.reason)
+                                                                     : dp::abort_reason_name(a.instance, a.reason);
     return reason + " of " + dp::name(a.instance) + " (" +
            octets_text({core::to_underlying(dp::AcyclicFunction::abort), a.subnet, instance_reason}) + ')';
 }

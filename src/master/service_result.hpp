@@ -31,7 +31,7 @@ struct ServiceResult {
     dp::RecordError error{};
     fdl::Response response{};
     dp::AcyclicError rule{};
-    dp::Abort abort{};
+    dp::Abort abort{};         ///< also of a connection that ended with not_taken or unanswered: instance FDL
 
     bool pending() const { return kind == Kind::pending; }
     bool finished() const { return kind > Kind::pending; }

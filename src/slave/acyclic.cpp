@@ -12,9 +12,8 @@ namespace {
 
 std::string closed_text(const AcyclicEvent& e) {
     const std::string head = "connection on SAP " + std::to_string(e.sap) + " closed ";
-    const std::string why = e.abort.instance == dp::AbortInstance::msac_c2
-                                ? std::string{dp::abort_reason_name(e.abort.reason)}
-                                : std::string{dp::name(e.abort.instance)} + " reason " + std::to_string(e.abort.reason);
+    const std::string why = e.abort.instance == dp::AbortInstance::user ? "user reason " + std::to_string(e.abort.reason)
+                                                                        : dp::abort_reason_name(e.abort.instance, e.abort.reason);
     switch (e.closed_by) {
     case driver::ClosedBy::master: return head + "by the master: " + why;
     case driver::ClosedBy::driver: return head + "by the slave: " + why;

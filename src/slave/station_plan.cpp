@@ -81,6 +81,8 @@ driver::AcyclicConfig acyclic_config(const gsd::Gsd& gsd, const SlaveSetup& setu
     if (v1.c2_read_write) {
         a.connections = setup.connections.value_or(clamp_octets(v1.c2_max_count_channels, 1, driver::kMaxConnections));
         a.ms2_max_data = clamp_octets(v1.c2_max_data_len, 4, dp::kMaxRecord);
+        // What the file promises to take must not be cut off by the slave's own supervision.
+        a.send_timeout = static_cast<std::uint16_t>(std::min<std::uint32_t>(v1.c2_response_timeout, dp::kMaxSendTimeout));
         if (v1.max_initiate_pdu_length != 0) a.max_initiate = clamp_octets(v1.max_initiate_pdu_length, dp::kMinInitiateReq, dp::kMaxInitiatePdu);
     }
     a.identification = v1.ident_maintenance || setup.identification;
@@ -123,6 +125,13 @@ bool fits_with_fewer_connections(driver::Config& c, const Dpv2Room& room) {
         if (fault_of(c, room) == driver::ConfigError::none) return true;
     }
     return false;
+}
+
+/// Whether other modules than the plugged ones find room, too, without giving up connections for them.
+bool has_room(driver::Config c, const Dpv2Room& dpv2) {
+    c.ram = ram_sizes(c.variant).back();
+    c.max_prm = clamp_octets(dp::kSetPrmHeader + std::size_t{c.prm_rules.min_octets}, 7, 244);
+    return fault_of(c, dpv2) == driver::ConfigError::none;
 }
 
 /// Finds room: generous lengths in either RAM, then less, then only what the station needs.
@@ -222,7 +231,8 @@ StationPlan::StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup) {
         ext_prm = OwnedPrmRules{gsd, configuration, true};
         c.set_ext_prm = true;
     }
-    if (setup.cfg_policy == driver::CfgPolicy::follow_master) {
+    if (c.cfg_policy == driver::CfgPolicy::plugged && gsd.dpv1.slave && gsd.dpv1.check_cfg_mode && t.dpv1) c.cfg_policy = driver::CfgPolicy::as_parameterised;
+    if (c.cfg_policy != driver::CfgPolicy::plugged) {
         c.max_inputs = clamp_octets(gsd.max_input_len.value_or(configuration.input_octets), 0, 244);
         c.max_outputs = clamp_octets(gsd.max_output_len.value_or(configuration.output_octets), 0, 244);
     }
@@ -238,6 +248,10 @@ StationPlan::StationPlan(const gsd::Gsd& gsd, const SlaveSetup& setup) {
         clock = gsd.dpv2.time_sync && t.clock_sync;
         blocks = publisher || dxb.max_links != 0 || clock || gsd.dpv2.isochron_mode || gsd.dpv2.prm_cmd;
         if (blocks) c.prm_rules.max_octets = dp::kMaxUserPrm;
+    }
+    if (c.cfg_policy == driver::CfgPolicy::as_parameterised && !has_room(c, {dxb, clock})) {
+        c.cfg_policy = driver::CfgPolicy::plugged;
+        c.max_inputs = c.max_outputs = 0;
     }
     choose_lengths(c, configuration, {dxb, clock});
 }

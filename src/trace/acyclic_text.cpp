@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PDUs of MS1 and MS2, alarms and status messages in words (reference 5.3 to 5.6).
 #include <array>
+#include <string_view>
 
 #include <dpchip/core/bits.hpp>
 #include <dpchip/dp/acyclic_error.hpp>
@@ -105,7 +106,9 @@ void initiate_text(AcyclicDirection way, Octets pdu, DataText& text) {
 }
 
 std::string abort_text(const dp::Abort& a) {
-    const std::string reason = a.instance == dp::AbortInstance::msac_c2 ? dp::abort_reason_name(a.reason) : "reason " + std::to_string(a.reason);
+    const std::string_view known = dp::abort_reason_name(a.instance, a.reason);
+    const bool words = a.instance != dp::AbortInstance::user && (a.instance == dp::AbortInstance::msac_c2 || known != "reserved");
+    const std::string reason = words ? std::string{known} : "reason " + std::to_string(a.reason);
     return std::string{"by "} + dp::name(a.instance) + ": " + reason + (a.subnet == 0 ? "" : std::string{", "} + dp::abort_subnet_name(a.subnet));
 }
 

@@ -42,6 +42,8 @@ private:
     std::uint16_t list_{};
 };
 
+// proves: VPC3C 7.2.1-05, VPC3C 7.2.1-10, VPC3C 7.2.1-14, VPC3C 7.2.1-25..27, VPC3C 7.2.1-31, VPC3C 7.2.1-32
+// proves: VPC3C 7.2.1-33, VPC3C 7.2.1-37, VPC3C 7.2.1-38, VPC3C 7.2.1-43, VPC3C 7.2.1-46, VPC3C 5.3.1-12
 TEST_P(ChecksStepBC, C113_a_request_with_data_is_stored_and_indicated) {
     SapBench b{recipe(), SapBench::entry(0x33)};
     EXPECT_EQ(b.ask(kRead), kSc);
@@ -50,6 +52,8 @@ TEST_P(ChecksStepBC, C113_a_request_with_data_is_stored_and_indicated) {
     EXPECT_EQ(text(b.ram(b.list(), 3)), "33 82 33") << "the requester is written into the entry";
 }
 
+// proves: VPC3C 7.2.1-06, VPC3C 7.2.1-07, VPC3C 7.2.1-14, VPC3C 7.2.1-24, VPC3C 7.2.1-28, VPC3C 7.2.1-39..42
+// proves: VPC3C 7.2.1-44, VPC3C 7.2.1-45, VPC3C 7.2.1-50..52, VPC3C 5.3.1-13
 TEST_P(ChecksStepBC, C114_a_poll_gets_SC_until_the_response_is_there) {
     SapBench b{recipe(), SapBench::entry(0x33)};
     EXPECT_EQ(b.ask(kRead), kSc);
@@ -64,6 +68,7 @@ TEST_P(ChecksStepBC, C114_a_poll_gets_SC_until_the_response_is_there) {
     EXPECT_EQ(b.ask(kPoll), kSc);
 }
 
+// proves: VPC3C 7.2.1-16, VPC3C 7.2.1-35
 TEST_P(ChecksStepBC, C115_another_master_is_refused) {
     SapBench b{recipe(), SapBench::entry(0x33, 0x82)};
     EXPECT_EQ(b.ask("68 09 09 68 88 83 6D 33 33 5E 01 10 04 51 16"), "10 03 08 03 0E 16");
@@ -71,6 +76,7 @@ TEST_P(ChecksStepBC, C115_another_master_is_refused) {
     EXPECT_EQ(b.ask(b.request(3, 0x6D, 0x33, {})), "10 03 08 03 0E 16") << "and may not poll either";
 }
 
+// proves: VPC3C 7.2.1-22, VPC3C 7.2.1-23, VPC3C 7.2.1-25, VPC3C 7.2.1-30, VPC3C 7.2.1-36
 TEST_P(ChecksStepBC, C116_without_a_free_indication_buffer_the_answer_is_RR) {
     SapBench b{recipe(), SapBench::entry(0x33)};
     EXPECT_EQ(b.ask(kRead), kSc);
@@ -104,6 +110,7 @@ TEST_P(ChecksStepBC, C118_a_response_that_waits_is_the_immediate_answer_and_the_
     EXPECT_EQ(text(b.ram(b.list(), 3)), "B1 82 32");
 }
 
+// proves: VPC3C 7.2.1-17, VPC3C 7.2.1-19, VPC3C 7.2.1-39
 TEST_P(ChecksStepBC, a_poll_does_not_close_an_open_entry) {
     SapBench b{recipe(), SapBench::entry(0x31)};
     EXPECT_EQ(b.ask(b.request(2, 0x5D, 0x31, {})), kSc);
@@ -142,6 +149,7 @@ TEST_P(ChecksStepBC, a_repeated_request_is_not_stored_twice) {
     EXPECT_EQ(b.peek(SapBench::kInd1), 0);
 }
 
+// proves: VPC3C 7.2.1-16, VPC3C 7.2.1-35
 TEST_P(ChecksStepBC, a_closed_SAP_and_one_that_is_not_listed_are_not_activated) {
     Octets closed = SapBench::entry(0x33);
     closed[4] = 0;
@@ -152,6 +160,7 @@ TEST_P(ChecksStepBC, a_closed_SAP_and_one_that_is_not_listed_are_not_activated) 
     EXPECT_EQ(locked.ask(kRead), kRs) << "the own address locks a SAP";
 }
 
+// proves: VPC3C 7.2.1-18, VPC3C 7.2.1-35
 TEST_P(ChecksStepBC, Request_SSAP_is_compared_and_a_missing_one_counts_as_40H) {
     SapBench b{recipe(), SapBench::entry(0x33, 0x82, 0x33)};
     EXPECT_EQ(b.ask(kRead), kSc);
@@ -178,6 +187,7 @@ constexpr ServiceRow kServices[]{
     {0x0C, false, false, false, false, false, false}, {0x10, false, false, false, false, false, false},
 };
 
+// proves: VPC3C 7.2.1-20, VPC3C 7.2.1-21, VPC3C 7.2.1-32
 TEST_P(ChecksStepBC, Service_Supported_permits_what_it_says) {
     for (const ServiceRow& row : kServices) {
         const struct { std::uint8_t fc; bool permitted, answered; } tries[]{
@@ -204,6 +214,42 @@ TEST_P(ChecksStepBC, an_immediate_response_that_is_never_sent_still_lets_the_use
     EXPECT_EQ(b.peek(SapBench::kRespBuf), kUser | kResp) << "the response waits for the next poll";
 }
 
+// proves: VPC3C 7.2.1-01, VPC3C 7.2.1-09..11, VPC3C 7.2.1-15, VPC3C 4.1-11
+TEST_P(ChecksStepBC, entries_of_seven_octets_for_SAPs_0_to_51_follow_each_other_up_to_FF) {
+    Octets list;
+    for (const std::uint8_t sap : {std::uint8_t{0}, std::uint8_t{25}, std::uint8_t{51}}) {
+        const Octets one = SapBench::entry(sap);
+        list.insert(list.end(), one.begin(), one.end());
+    }
+    SapBench b{recipe(), list};
+    for (std::uint8_t sap = 0; sap <= 51; ++sap) {
+        b.put(SapBench::kInd0, {0});
+        const bool listed = sap == 0 || sap == 25 || sap == 51;
+        EXPECT_EQ(b.ask(b.request(2, 0x5D, sap, {0x5E, 1})), listed ? kSc : kRs) << int{sap};
+    }
+}
+
+// proves: VPC3C 7.2.1-12
+TEST_P(ChecksStepBC, a_list_that_begins_with_FF_has_no_SAP) {
+    SapBench b{recipe(), {}};
+    for (std::uint8_t sap = 0; sap <= 51; ++sap) EXPECT_EQ(b.ask(b.request(2, 0x5D, sap, {0x5E, 1})), kRs) << int{sap};
+    EXPECT_EQ(b.irr(), 0);
+}
+
+// proves: VPC3C 7.2.1-04, VPC3C 7.2.1-22, VPC3C 7.2.1-23, VPC3C 7.2.1-26..29, VPC3C 7.2.1-36
+TEST_P(ChecksStepBC, a_buffer_with_any_of_its_control_bits_set_is_not_free) {
+    for (const std::uint8_t bit : {std::uint8_t{0x80}, std::uint8_t{0x40}, std::uint8_t{0x20}, std::uint8_t{0x10}}) {
+        SapBench b{recipe(), SapBench::entry(0x33)};
+        b.write(SapBench::kInd0, bit);
+        EXPECT_EQ(b.ask(kRead), kSc);
+        EXPECT_EQ(b.peek(SapBench::kInd0), bit) << "untouched";
+        EXPECT_EQ(text(b.ram(SapBench::kInd1, 4)), "C0 20 04 0D") << "the other one is taken";
+        b.write(SapBench::kInd1, bit);
+        b.put(static_cast<std::uint16_t>(b.list() + 1), {0x7F, 0x7F});
+        EXPECT_EQ(b.ask(kRead), kRr);
+    }
+}
+
 TEST_P(ChecksStepBC, a_list_without_an_end_ends_all_the_same) {
     SapBench b{recipe(), SapBench::entry(0x33)};
     for (std::uint16_t a = 0x40; a < 0x800; ++a)
@@ -211,6 +257,7 @@ TEST_P(ChecksStepBC, a_list_without_an_end_ends_all_the_same) {
     EXPECT_EQ(b.ask(b.request(2, 0x5D, 0x20, {0x01})), kRs);
 }
 
+// proves: VPC3C 1-03
 TEST_P(Checks, chips_without_DP_V1_answer_RS_on_every_listed_SAP) {
     if (traits().dpv1) return;  // the other tests of this file are about those
     Bench b{recipe(), Stage::p2};

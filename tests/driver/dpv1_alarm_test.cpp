@@ -55,6 +55,7 @@ protected:
 };
 INSTANTIATE_TEST_SUITE_P(AllChips, Alarms, ::testing::ValuesIn(kDpv1Kinds), [](const auto& param) { return std::string{param.param.name}; });
 
+// proves: VPC3C 1-03, VPC3C 6.2.4-24, VPC3C 7.2.2-02, VPC3C 7.2.2-05
 TEST_P(Alarms, AnAlarmIsShownAcknowledgedAndGone) {
     start();
     const Octets data{0xAA, 0xBB};
@@ -179,6 +180,7 @@ TEST_P(Alarms, TheApplicationsOwnBlocksStayInFront) {
     EXPECT_EQ(raise(alarm(2, 1, Octets(60))), AlarmResult::too_long);
 }
 
+// proves: VPC3C 6.2.4-24, VPC3C 7.2.2-03
 TEST_P(Alarms, AStatusMessageIsShownOnce) {
     start();
     EXPECT_EQ(raise(status(1, 3)), AlarmResult::queued);

@@ -55,6 +55,7 @@ Config quiet(const Dpv1Bench& t) {
 }
 
 // proves: VPC3C 7.2.1-06, VPC3C 7.2.1-07, VPC3C 7.2.1-08
+// proves: VPC3C 7.2.1-38..54, VPC3C 5.3.1-12, VPC3C 5.3.1-13
 TEST(GoldenTrace, ARequestIsTakenWorkedOnAndAnsweredAsInFigures75And76) {
     Recording r;
     r.t.to_dpv1(quiet(r.t));

@@ -115,6 +115,7 @@ TEST_F(Refusal, EveryRuleHasItsOwnName) {
 }
 
 // proves: VPC3C 7.2.1-01, VPC3C 7.2.1-03, VPC3C 7.2.1-04
+// proves: VPC3C 7.2.1-10, VPC3C 7.2.1-11, VPC3C 7.2.1-13, VPC3C 7.2.1-17, VPC3C 7.2.1-19, VPC3C 4.1-11
 TEST_F(Refusal, TheListIsWrittenBeforeStartLockedExceptForTheResourceManager) {
     ASSERT_EQ(drv.configure(with_dpv1()), ConfigError::none);
     ASSERT_TRUE(drv.start());
@@ -135,6 +136,7 @@ TEST_F(Refusal, TheListIsWrittenBeforeStartLockedExceptForTheResourceManager) {
     EXPECT_LT(end_mark - chip.log.begin(), start - chip.log.begin());
 }
 
+// proves: VPC3C 7.2.1-47..49, VPC3C 7.2.1-53
 TEST_F(Refusal, InterruptsAreAcknowledgedFirstAndTheControlOctetIsWrittenLast) {
     ASSERT_EQ(drv.configure(with_dpv1()), ConfigError::none);
     ASSERT_TRUE(drv.start());

@@ -40,6 +40,7 @@ TEST_P(Ms1, IsOpenedByAnAcceptedConfigurationAndClosedWhenTheMasterLeaves) {
 }
 
 // proves: VPC3C 7.2.1-02
+// proves: VPC3C 6.2.2-14, VPC3C 7.2.1-02
 TEST_P(Ms1, StaysClosedWithoutDpv1Enable) {
     t.to_dpv1(t.dpv1_config(), 0x00);
     EXPECT_FALSE(t.drv.dpv1().ms1_open());
@@ -56,6 +57,7 @@ TEST_P(Ms1, NewParametersInDataExchangeKeepItOrCloseIt) {
     EXPECT_EQ(t.ms1({0x5E, 1, 0x10, 4}), Octets{kRs});
 }
 
+// proves: VPC3C 1-03, VPC3C 7.2.1-54
 TEST_P(Ms1, ReadsAndWritesAsTheReferenceShows) {
     t.to_dpv1();
     t.app.records[{1, 0x10}] = {1, 2, 3, 4};

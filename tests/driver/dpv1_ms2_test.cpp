@@ -166,12 +166,38 @@ TEST_P(Ms2, TheApplicationDecidesAboutAConnectionNowOrLater) {
     const Handle first = t.app.handle;
     EXPECT_EQ(first.sap, 47) << "that was on offer before 48 was free again";
     EXPECT_TRUE(t.poll(47, 50).empty());
-    EXPECT_FALSE(t.drv.complete(first, answered())) << "no record is waited for";
     EXPECT_TRUE(t.drv.complete(first, accept_connection({.features_1 = 1, .profile_ident = 0x9700})));
     const Octets answer = t.poll(47, 50);
     ASSERT_EQ(answer.size(), 16U);
     EXPECT_EQ(dp::decode_initiate_res(answer)->features.profile_ident, 0x9700);
     EXPECT_FALSE(t.drv.complete(first, accept_connection()));
+}
+
+TEST_P(Ms2, AnAnswerOfAnotherServiceEndsTheConnectionWithIV) {
+    t.app.initiate_later = true;
+    t.acyclic(49, 50, Dpv1Bench::initiate_req());
+    EXPECT_FALSE(t.drv.complete(t.app.handle, answered())) << "no record is waited for";
+    EXPECT_EQ(t.poll(48, 50), (Octets{0x58, 0x00, 0x15}));
+    t.app.initiate_later = false;
+    ASSERT_EQ(t.open(), 47);
+    t.app.later = true;
+    t.acyclic(47, 50, {0x5E, 1, 0x10, 4});
+    EXPECT_FALSE(t.drv.complete(t.app.handle, accept_connection())) << "no connection is waited for";
+    EXPECT_EQ(t.poll(47, 50), (Octets{0x58, 0x00, 0x15}));
+    EXPECT_EQ(t.poll(47, 50), Octets{kRs});
+}
+
+TEST_P(Ms2, TheApplicationRefusesWithAReasonOfMsac) {
+    struct Case {
+        InitiateAnswer answer;
+        std::uint8_t octet;
+    };
+    for (const Case& c : {Case{refuse_connection(dp::AbortReason::resource_error), 0x1F}, Case{refuse_connection(dp::AbortReason::invalid_address), 0x17}}) {
+        t.app.initiate_later = true;
+        const std::uint8_t sap = Dpv1Bench::pdu_of(t.acyclic(49, 50, Dpv1Bench::initiate_req()))[1];
+        EXPECT_TRUE(t.drv.complete(t.app.handle, c.answer));
+        EXPECT_EQ(t.poll(sap, 50), (Octets{0x58, 0x00, c.octet}));
+    }
 }
 
 TEST_P(Ms2, RequestsOutOfTurnAreASequenceError) {

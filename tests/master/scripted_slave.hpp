@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <vector>
 
 #include <dpchip/dp/saps.hpp>
@@ -109,10 +110,13 @@ struct ScriptedSlave {
         case dp::kSapSetSlaveAdd:
             if (state == State::wait_prm && r.data().size() >= 4) moved_to = r.data()[0];
             return sc();
-        default: return negative(r, fdl::Response::rs);
+        default:
+            if (!acyclic || !acyclic(r)) negative(r, fdl::Response::rs);
+            return;
         }
     }
     int moved_to = -1;
+    std::function<bool(const fdl::Telegram&)> acyclic{};  ///< answers a request to another SAP, or leaves it
 
     void diagnosis(const fdl::Telegram& r) {
         if (state == State::wait_cfg && cfg_good && not_ready_for-- <= 0) {
