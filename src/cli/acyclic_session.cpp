@@ -137,13 +137,15 @@ void AcyclicSession::open_class_1() {
         const bool parameters = slave.fault() == master::SlaveFault::prm_fault || slave.fault() == master::SlaveFault::not_supported;
         fail(trouble(slave) + (parameters && gsd_ == nullptr ? "; --gsd FILE tells what it wants" : ""));
     }
-    ms1_ = std::make_unique<master::Ms1>(master::Ms1Config{.address = address_, .response_timeout = patience_});
+    master::Ms1Config relation{.address = address_, .response_timeout = patience_};
+    if (gsd_ != nullptr) relation.response_timeout = std::max(patience_, master::ms1_config(*gsd_, address_).response_timeout);
+    ms1_ = std::make_unique<master::Ms1>(relation);
     relation_ = ms1_.get();
     live_.master().attach(*relation_);
 }
 
 void AcyclicSession::open_class_2() {
-    ms2_ = std::make_unique<master::Ms2>(master::Ms2Config{.address = address_});
+    ms2_ = std::make_unique<master::Ms2>(gsd_ != nullptr ? master::ms2_config(*gsd_, address_) : master::Ms2Config{.address = address_});
     relation_ = ms2_.get();
     live_.master().attach(*relation_);
     ms2_->open();

@@ -26,7 +26,7 @@ struct Arguments {
 
 gsd::Parsed read(const std::string& path) {
     if (path == "-") return gsd::parse(read_all(path), path);
-    if (path == kBuiltinRemoteIo) return gsd::parse(builtin_gsd(path), path);
+    if (const std::string_view text = builtin_gsd(path); !text.empty()) return gsd::parse(text, path);
     return gsd::read(path);
 }
 
@@ -149,7 +149,7 @@ ExitCode run(const Arguments& a) {
 void add_gsd(CLI::App& app, Job& job) {
     CLI::App* const c = app.add_subcommand("gsd", "say what GSD files say, and what is wrong with them");
     const auto a = std::make_shared<Arguments>();
-    c->add_option("files", a->files, "GSD files; - reads stdin, builtin:remote_io is inside the program")->type_name("FILE")->required();
+    c->add_option("files", a->files, "GSD files; - reads stdin, builtin:remote_io and builtin:dpv1_io are inside the program")->type_name("FILE")->required();
     c->add_option("--module", a->modules, "plug this module, in slot order: configuration octets, lengths, parameters")->type_name("NAME")->expected(1)->take_all();
     c->add_flag("--modules", a->list_modules, "list the modules");
     c->add_flag("--parameters", a->parameters, "list the parameters of the station with the modules given, or its preset ones");

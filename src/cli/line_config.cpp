@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <dpchip/cli/diagnosis_config.hpp>
 #include <dpchip/cli/event_config.hpp>
 #include <dpchip/cli/input.hpp>
 #include <dpchip/cli/line_config.hpp>
@@ -82,6 +83,7 @@ SlaveEntry read_slave(const toml::table& table, const std::string& file) {
     s.group = static_cast<std::uint8_t>(t.integer("group", 0, 255).value_or(0));
     s.sync = t.boolean("sync").value_or(false);
     s.freeze = t.boolean("freeze").value_or(false);
+    read_enabled_alarms(t, s);
     t.finish();
     return s;
 }

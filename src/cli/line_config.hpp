@@ -11,6 +11,7 @@
 #include <dpchip/cli/failure.hpp>
 #include <dpchip/cli/record_config.hpp>
 #include <dpchip/cli/units.hpp>
+#include <dpchip/dp/diag.hpp>
 #include <dpchip/gsd/user_prm.hpp>
 #include <dpchip/live/line.hpp>
 #include <dpchip/master/config.hpp>
@@ -43,6 +44,10 @@ struct SlaveEntry {
     std::optional<std::uint32_t> watchdog_ms{};
     std::uint8_t group = 0;
     bool sync = false, freeze = false;
+    std::uint8_t alarms = 0;            ///< types it enables and acknowledges: bits of DPV1_Status_2
+    bool all_alarms = false;            ///< of these, whatever the GSD supports
+    std::uint8_t alarm_mode = 0;        ///< Alarm_Mode: 0 one of each type at a time, 1..7 see dp::alarm_limit()
+    Place alarms_at{};
 };
 
 struct MasterEntry {
@@ -55,16 +60,21 @@ struct MasterEntry {
     master::Mode mode = master::Mode::operate;
 };
 
-enum class EventKind : std::uint8_t { power_off, power_on, unplug, plug, diagnosis, global_control, fault, mode, io };
-inline constexpr std::size_t kEventKinds = 9;
+enum class EventKind : std::uint8_t { power_off, power_on, unplug, plug, diagnosis, alarm, status, global_control, fault, mode, io };
+inline constexpr std::size_t kEventKinds = 11;
 const char* name(EventKind kind);
+/// What the slave's own side does: possible on a live line, too.
+constexpr bool is_of_the_slave(EventKind kind) {
+    return kind == EventKind::diagnosis || kind == EventKind::alarm || kind == EventKind::status || kind == EventKind::io;
+}
 
 struct EventEntry {
     Place at{};
     Ticks when{};
     EventKind kind{};
     std::size_t slave{};              ///< index into LineConfig::slaves
-    std::vector<std::uint8_t> octets; ///< diagnosis
+    std::vector<std::uint8_t> octets; ///< diagnosis; user data of an alarm or status
+    dp::AlarmStatus alarm{};          ///< alarm, status; its data are `octets`
     bool ext_diag = true, stat_diag = false;
     std::uint8_t command = 0, groups = 0;
     segment::Fault fault{};

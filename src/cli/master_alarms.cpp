@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <dpchip/cli/acyclic_session.hpp>
+#include <dpchip/cli/alarm_desk.hpp>
 #include <dpchip/cli/interrupt.hpp>
 #include <dpchip/cli/log.hpp>
 #include <dpchip/cli/master_verbs.hpp>
@@ -25,28 +26,9 @@ struct Arguments {
     bool json = false;
 };
 
-dp::AlarmStatus status_of(const master::ReceivedAlarm& r) {
-    dp::AlarmStatus a{};
-    a.status = r.status;
-    a.type = r.type;
-    a.slot = r.slot;
-    a.seq_nr = r.seq_nr;
-    a.add_ack = r.add_ack;
-    a.specifier = r.specifier;
-    a.data = r.data();
-    return a;
-}
-
-/// Texts of the GSD for the alarm's own bits.
-std::vector<std::string> device_texts(const dp::AlarmStatus& a, std::uint8_t station, const trace::DeviceTexts& texts) {
-    std::array<std::uint8_t, dp::kMaxDeviceBlock> block{};
-    const auto size = dp::encode(a, block);
-    return size ? texts.device_diag(station, std::span{block}.first(*size).subspan(1)) : std::vector<std::string>{};
-}
-
 void tell(const master::ReceivedAlarm& r, AcyclicSession& session, bool json) {
-    const dp::AlarmStatus alarm = status_of(r);
-    const auto texts = device_texts(alarm, session.address(), session.texts());
+    const dp::AlarmStatus alarm = alarm_of(r);
+    const auto texts = alarm_details(alarm, session.address(), session.texts());
     if (json) {
         nlohmann::ordered_json j;
         j["kind"] = r.status ? "status" : "alarm";

@@ -6,12 +6,15 @@
 
 #include <fmt/format.h>
 
+#include <dpchip/cli/command_input.hpp>
 #include <dpchip/cli/commands.hpp>
+#include <dpchip/cli/event_config.hpp>
 #include <dpchip/cli/interrupt.hpp>
 #include <dpchip/cli/live_view.hpp>
 #include <dpchip/cli/log.hpp>
 #include <dpchip/cli/settings.hpp>
 #include <dpchip/cli/slave_arguments.hpp>
+#include <dpchip/cli/slave_events.hpp>
 #include <dpchip/cli/state_store.hpp>
 #include <dpchip/cli/stations.hpp>
 #include <dpchip/cli/trace_file.hpp>
@@ -24,12 +27,14 @@ struct Arguments {
     LineArguments line;
     LineConfig slaves;
     std::string state_dir;
+    std::string commands;
     bool show_options = false;
 };
 
 class Server {
 public:
-    explicit Server(const LineConfig& config);
+    /// `commands`: where commands come from; empty: nowhere.
+    Server(const LineConfig& config, const std::string& commands);
     ExitCode run();
 
 private:
@@ -38,6 +43,7 @@ private:
         std::unique_ptr<slave::VirtualSlave> slave;
         slave::StoredAddress stored{};
         std::string said;  ///< its state as told last
+        segment::StationIndex index{};
     };
 
     void build();
@@ -47,11 +53,16 @@ private:
     Rows rows() const;
     void summary(const live::LiveLine& line) const;
     bool changed() const;
+    Ticks until_event(Ticks now, Ticks longest) const;
+    void happen(live::LiveLine& line);
+    void happen(live::LiveLine& line, const EventEntry& event);
 
     LineConfig config_;
     GsdShelf shelf_;
     std::optional<StateStore> store_;
     std::vector<Served> served_;
+    std::size_t next_event_ = 0;
+    std::optional<CommandInput> commands_;
 };
 
 std::string state_text(const slave::VirtualSlave& s) {
@@ -61,11 +72,14 @@ std::string state_text(const slave::VirtualSlave& s) {
     return text;
 }
 
-Server::Server(const LineConfig& config) : config_{config} {
+Server::Server(const LineConfig& config, const std::string& commands) : config_{config} {
     if (config_.slaves.empty()) throw Failure{ExitCode::usage, "no slave to serve: give --gsd FILE --address N, or a LINE.toml with [[slave]]"};
-    if (!config_.events.empty()) spdlog::warn("{}: [[event]] is for `dpchip sim`; serve leaves events out", config_.file);
+    for (const EventEntry& e : config_.events)
+        if (!is_of_the_slave(e.kind)) spdlog::warn("{}: note: {} is for `dpchip sim`; serve leaves it out", to_string(e.at), name(e.kind));
+    std::erase_if(config_.events, [](const EventEntry& e) { return !is_of_the_slave(e.kind); });
     if (config_.state_dir) store_.emplace(*config_.state_dir);
     build();
+    if (!commands.empty()) commands_.emplace(commands);
 }
 
 /// Everything that can be wrong with files and modules is found before the line is opened.
@@ -124,6 +138,35 @@ void Server::tell_changes() {
     }
 }
 
+/// How long the line may run until something is to happen.
+Ticks Server::until_event(Ticks now, Ticks longest) const {
+    if (next_event_ == config_.events.size()) return longest;
+    return std::clamp(config_.events[next_event_].when - now, Ticks{}, longest);
+}
+
+/// Events that are due, and commands that have come.
+void Server::happen(live::LiveLine& line) {
+    for (; next_event_ < config_.events.size() && config_.events[next_event_].when <= line.now(); ++next_event_) happen(line, config_.events[next_event_]);
+    while (const auto command = commands_ ? commands_->line() : std::nullopt) try {
+            happen(line, read_command(*command, commands_->place(), config_));
+        } catch (const Failure& f) {
+            spdlog::error("{}", f.what());
+        }
+}
+
+/// What cannot be is said, and the slaves go on.
+void Server::happen(live::LiveLine& line, const EventEntry& event) {
+    Served& s = served_[event.slave];
+    line.segment().settle();
+    try {
+        const Deed deed = do_to(*s.slave, event);
+        spdlog::log(deed.good ? spdlog::level::info : spdlog::level::warn, "slave {} {}: {}", s.slave->stored_address().address, s.slave->name(), deed.words);
+    } catch (const Failure& f) {
+        spdlog::error("{}", f.what());
+    }
+    line.segment().touch(s.index);
+}
+
 Rows Server::rows() const {
     Rows rows{{"ADDR", "NAME", "DP_STATE", "WD_STATE", "BAUD RATE", "MASTER", "EXCHANGES", "OUTPUTS", "INPUTS"}};
     for (const Served& s : served_) {
@@ -155,9 +198,11 @@ void Server::summary(const live::LiveLine& line) const {
 ExitCode Server::run() {
     live::OpenLine open{config_.line.value_or("pty"), live::Role::serve, line_options()};
     live::LiveLine& line = open.line();
-    for (const Served& s : served_)
-        if (const auto attached = line.segment().attach(*s.slave, s.slave->name()); !attached)
-            refuse(s.entry.at, title(s.entry) + ": " + segment::name(attached.error()));
+    for (Served& s : served_) {
+        const auto attached = line.segment().attach(*s.slave, s.slave->name());
+        if (!attached) refuse(s.entry.at, title(s.entry) + ": " + segment::name(attached.error()));
+        s.index = *attached;
+    }
     if (config_.baud_auto) line.follow_baud([this] { return served_.front().slave->chip().state().probe; });
     std::optional<TraceFile> trace;
     if (config_.trace)
@@ -168,7 +213,9 @@ ExitCode Server::run() {
     std::fflush(stdout);
     LiveView view;
     while (!line.stopped()) {
-        line.run(core::milliseconds(view.active() ? 200 : 50), [this] { return changed(); });
+        const Ticks slice = core::milliseconds(view.active() && !commands_ ? 200 : 50);
+        line.run(until_event(line.now(), slice), [this] { return changed(); });
+        happen(line);
         keep_addresses();
         if (view.active()) view.draw(rows());
         else tell_changes();
@@ -190,9 +237,12 @@ void add_serve(CLI::App& app, Job& job) {
     add_line_arguments(*c, a->line);
     add_model_arguments(*c, a->line);
     c->add_option("--state-dir", a->state_dir, "keep addresses of Set_Slave_Add here, a file per slave")->type_name("DIR");
+    c->add_option("--commands", a->commands, "do what lines from there say (docs/config.md): - is stdin; a path that is not there becomes a FIFO")->type_name("PATH");
     c->add_flag("--show-options", a->show_options, "list the options of the model and stop");
     c->footer(footer("  dpchip serve --gsd builtin:remote_io --module \"8 DI\" --module \"8 DO\" --address 5 --line pty:dp0\n"
                      "  dpchip serve examples/line.toml --line tcp:9000 --trace start.pcapng\n"
+                     "  dpchip serve --gsd builtin:dpv1_io --module \"8 DI / 8 DO\" --address 7 --record 1:4=01020304 --line pty:dp1 --commands dp1.cmd\n"
+                     "  echo alarm slave=7 type=diagnostic slot=1 specifier=appears octets=01 >dp1.cmd\n"
                      "The first line on stdout is `ready pty=PATH`, `ready serial=DEVICE` or `ready tcp=HOST:PORT`.\n"
                      "Without --line a new pty is made. SIGINT and SIGTERM end it with a summary."));
     c->callback([a, &job] {
@@ -203,7 +253,7 @@ void add_serve(CLI::App& app, Job& job) {
             }
             LineConfig config = line_config(a->line, a->slaves);
             if (!a->state_dir.empty()) config.state_dir = a->state_dir;
-            return Server{config}.run();
+            return Server{config, a->commands}.run();
         };
     });
 }

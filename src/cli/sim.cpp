@@ -33,6 +33,17 @@ std::string state(const Simulation::Member& m) {
 
 double in_us(Ticks t) { return static_cast<double>(t.n) / static_cast<double>(core::kTicksPerNs) / 1e3; }
 
+void report_alarms(const Simulation& s) {
+    for (const AlarmDesk::Line& a : s.alarms()) {
+        std::printf("%s %s: %s\n", time_text(a.at).c_str(), title(s.members()[a.slave].entry).c_str(), a.text.c_str());
+        for (const std::string& detail : a.details) std::printf("  %s\n", detail.c_str());
+    }
+    if (s.alarm_desk().empty() && s.unheard() == 0) return;
+    std::printf("%llu alarms received, %llu acknowledged; %llu status messages; %llu that the master did not hear of\n",
+                static_cast<unsigned long long>(s.alarm_desk().alarms()), static_cast<unsigned long long>(s.alarm_desk().acknowledged()),
+                static_cast<unsigned long long>(s.alarm_desk().status_messages()), static_cast<unsigned long long>(s.unheard()));
+}
+
 void report_text(const Simulation& s, double seconds) {
     const master::Master& m = s.master();
     Rows rows{{"ADDR", "NAME", "SLAVE", "MASTER SAYS", "EXCHANGES", "COMPARED", "WRONG", "RETRIES", "LOST"}};
@@ -55,6 +66,7 @@ void report_text(const Simulation& s, double seconds) {
                 static_cast<unsigned long long>(s.application().compared()), static_cast<unsigned long long>(s.application().wrong()),
                 static_cast<unsigned long long>(s.faults()), static_cast<unsigned long long>(s.judge().telegrams()),
                 static_cast<unsigned long long>(s.judge().total()));
+    report_alarms(s);
     for (std::size_t n = 0; n < s.members().size(); ++n)
         if (s.application().checked(n).wrong != 0) spdlog::error("{}: {}", title(s.members()[n].entry), s.application().checked(n).first_wrong);
     for (const segment::Violated& v : s.judge().violations().first(std::min<std::size_t>(s.judge().violations().size(), 10)))
@@ -75,6 +87,13 @@ void report_json(const Simulation& s, double seconds) {
     j["retries"] = m.counters().retries;
     j["faults"] = s.faults();
     j["violations"] = s.judge().total();
+    if (!s.alarm_desk().empty()) {
+        j["alarms_acknowledged"] = s.alarm_desk().acknowledged();
+        j["alarms"] = nlohmann::ordered_json::array();
+        for (const AlarmDesk::Line& a : s.alarms())
+            j["alarms"].push_back({{"line_ns", core::to_ns(a.at)}, {"address", m.slave(a.slave).config().address}, {"kind", a.status ? "status" : "alarm"},
+                                   {"text", a.text}, {"details", a.details}});
+    }
     for (std::size_t n = 0; n < s.members().size(); ++n) {
         const Application::Checked& c = s.application().checked(n);
         nlohmann::ordered_json e;

@@ -6,6 +6,7 @@
 
 #include <dpchip/cli/log.hpp>
 #include <dpchip/cli/simulation.hpp>
+#include <dpchip/cli/slave_events.hpp>
 
 namespace dpchip::cli {
 namespace {
@@ -57,7 +58,6 @@ Simulation::Simulation(const LineConfig& config) : config_{config} {
     check_addresses(config_, m.address);
     master_ = std::make_unique<master::Master>(m);
     application_ = std::make_unique<Application>(wishes(config_));
-    master_->on_cycle(*application_);
     master_index_ = *segment_.attach(*master_, "master");
     for (const SlaveEntry& entry : config_.slaves) {
         if (entry.address == 126) refuse(entry.at, "a slave with address 126 has to get another one first");
@@ -68,6 +68,9 @@ Simulation::Simulation(const LineConfig& config) : config_{config} {
         members_.push_back(std::move(member));
         attach(members_.back());
     }
+    alarm_desk_ = std::make_unique<AlarmDesk>(*master_, config_.slaves, shelf_);
+    hook_ = {application_.get(), alarm_desk_.get()};
+    master_->on_cycle(hook_);
     segment_.observe(judge_);
     segment_.set_faults(segment::FaultRef{fault_source_});
     if (config_.trace) trace_ = std::make_unique<TraceFile>(*config_.trace, segment_, live::Recorder::Options{"simulated line", config_.link_type, 0, master_index_});
@@ -102,12 +105,28 @@ void Simulation::arm(const EventEntry& e) {
     fault_source_.armed.push_back({e.fault, e.count, sender});
 }
 
-void Simulation::diagnose(Member& m, const EventEntry& e) {
+void Simulation::happen_to(Member& m, const EventEntry& e) {
     if (!m.on) refuse(e.at, title(m.entry) + " has no power");
-    const driver::DiagFlags flags{e.ext_diag, e.stat_diag, false};
-    if (m.slave->set_diagnosis(e.octets, flags) == driver::DiagResult::too_long)
-        refuse(e.at, fmt::format("{} has room for {} octets of diagnosis with the header", title(m.entry), m.slave->plan().driver.max_diag));
+    const Deed deed = do_to(*m.slave, e);
+    if (deed.good) spdlog::info("{}: {}: {}", time_text(e.when), title(m.entry), deed.words);
+    else spdlog::warn("{}: {}: {}", time_text(e.when), title(m.entry), deed.words);
+    if (!deed.good) ++unheard_;
     if (m.plugged) segment_.touch(m.index);
+    if (e.kind != EventKind::io) return;
+    application_->expect(e.slave, m.slave->io());
+    m.entry.io = e.io;
+}
+
+/// What slaves and master have to say, as it happens.
+void Simulation::tell() {
+    for (AlarmDesk::Line& line : alarm_desk_->take(segment_.now())) {
+        spdlog::info("{}: master: {}: {}", time_text(line.at), title(members_[line.slave].entry), line.text);
+        for (const std::string& detail : line.details) spdlog::info("  {}", detail);
+        alarms_.push_back(std::move(line));
+    }
+    for (Member& m : members_)
+        while (const auto event = m.on ? m.slave->take_event() : std::nullopt)
+            spdlog::info("{}: {}: {}", time_text(segment_.now()), title(m.entry), slave::text(*event));
 }
 
 /// Global_Control, and what it does to the check of values.
@@ -139,21 +158,16 @@ void Simulation::happen(const EventEntry& e) {
     case EventKind::plug:
         if (!m.on || m.plugged) refuse(e.at, title(m.entry) + (m.on ? " is on the line already" : " has no power"));
         return attach(m);
-    case EventKind::diagnosis: return diagnose(m, e);
+    case EventKind::diagnosis:
+    case EventKind::alarm:
+    case EventKind::status:
+    case EventKind::io: return happen_to(m, e);
     case EventKind::global_control: return control(e);
     case EventKind::fault: return arm(e);
     case EventKind::mode:
         master_->set_mode(e.mode);
         segment_.touch(master_index_);
         return;
-    case EventKind::io: {
-        if (!m.on) refuse(e.at, title(m.entry) + " has no power");
-        const slave::IoBehaviour io{e.io};
-        m.slave->set_io(io);
-        application_->expect(e.slave, io);
-        m.entry.io = e.io;
-        return;
-    }
     }
 }
 
@@ -163,6 +177,7 @@ void Simulation::advance_to(Ticks end, std::optional<std::uint64_t> cycles) {
             reached_ = segment_.now();
             master_->clear_statistics();  // the summary is about data exchange, not about the way to it
         }
+        tell();
         return cycles && reached_ && master_->cycle().cycles >= *cycles;
     };
     segment_.run_until(look, end - segment_.now());

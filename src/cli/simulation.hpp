@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <dpchip/cli/alarm_desk.hpp>
 #include <dpchip/cli/application.hpp>
 #include <dpchip/cli/line_config.hpp>
 #include <dpchip/cli/stations.hpp>
@@ -41,6 +42,11 @@ public:
     const master::Master& master() const { return *master_; }
     const segment::Judge& judge() const { return judge_; }
     const Application& application() const { return *application_; }
+    const AlarmDesk& alarm_desk() const { return *alarm_desk_; }
+    /// Alarms and status messages that the master received, in their order.
+    const std::vector<AlarmDesk::Line>& alarms() const { return alarms_; }
+    /// Alarms of events that the slave could not tell anybody.
+    std::uint64_t unheard() const { return unheard_; }
     Ticks now() const { return segment_.now(); }
     std::uint64_t faults() const { return faults_; }
     /// When all slaves were in data exchange for the first time; nothing: never.
@@ -67,7 +73,8 @@ private:
     void detach(Member& m);
     void power_on(Member& m, const EventEntry& event);
     void arm(const EventEntry& event);
-    void diagnose(Member& m, const EventEntry& event);
+    void happen_to(Member& m, const EventEntry& event);
+    void tell();
     void control(const EventEntry& event);
     void advance_to(Ticks end, std::optional<std::uint64_t> cycles);
 
@@ -79,6 +86,17 @@ private:
     std::unique_ptr<master::Master> master_;
     segment::StationIndex master_index_{};
     std::unique_ptr<Application> application_;
+    std::unique_ptr<AlarmDesk> alarm_desk_;
+    struct CycleHook {
+        Application* application;
+        AlarmDesk* alarms;
+        void operator()(master::Master& m) {
+            (*application)(m);
+            alarms->look();
+        }
+    } hook_{};
+    std::vector<AlarmDesk::Line> alarms_;
+    std::uint64_t unheard_ = 0;
     std::uint64_t faults_ = 0;
     Faults fault_source_{{}, &faults_};
     std::unique_ptr<TraceFile> trace_;

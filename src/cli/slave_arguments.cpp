@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Command line to LineConfig.
+#include <cstdio>
+
 #include <fmt/format.h>
 
 #include <dpchip/cli/settings.hpp>
 #include <dpchip/cli/slave_arguments.hpp>
+#include <dpchip/dp/acyclic.hpp>
 
 namespace dpchip::cli {
 namespace {
@@ -38,6 +41,17 @@ int parse_address(const std::string& text) {
     return address;
 }
 
+/// "SLOT:INDEX=HEX", readable and writable.
+slave::Record parse_record(const std::string& text) {
+    unsigned slot = 0, index = 0;
+    int used = 0;
+    const bool head = std::sscanf(text.c_str(), "%3u:%3u=%n", &slot, &index, &used) == 2 && used != 0;
+    const auto octets = head ? parse_hex(text.substr(static_cast<std::size_t>(used))) : std::nullopt;
+    if (!octets || slot > 254 || index > 255 || octets->empty() || octets->size() > dp::kMaxRecord)
+        throw Failure{ExitCode::usage, fmt::format("--record {}: SLOT:INDEX=HEX is expected, 1 to 240 octets, such as 1:4=01A0", text)};
+    return {static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(index), slave::RecordAccess::rw, *octets, 0};
+}
+
 void apply_line(const LineArguments& a, LineConfig& c) {
     if (!a.line.empty()) c.line = a.line;
     if (!a.baud.empty()) {
@@ -70,7 +84,7 @@ void add_slave_arguments(CLI::App& command, LineConfig& config) {
                 entry.gsd = path;
                 config.slaves.push_back(std::move(entry));
             },
-            "GSD file of a slave; builtin:remote_io is inside the program")
+            "GSD file of a slave; builtin:remote_io and builtin:dpv1_io are inside the program")
         ->type_name("FILE")
         ->group("Slaves (each --gsd begins one)")
         ->take_last()
@@ -83,6 +97,7 @@ void add_slave_arguments(CLI::App& command, LineConfig& config) {
         s.io = t;
     });
     add(command, config, "--name", "TEXT", "name for people", [](SlaveEntry& s, const std::string& t) { s.name = t; });
+    add(command, config, "--record", "SLOT:INDEX=HEX", "a record of a DP-V1 slave", [](SlaveEntry& s, const std::string& t) { s.records.push_back(parse_record(t)); });
     add(command, config, "--parameter", "[SLOT:]NAME=VALUE", "user parameter a master sends", [](SlaveEntry& s, const std::string& t) {
         try {
             s.parameters.push_back(gsd::prm_setting(t));

@@ -3,6 +3,7 @@
 #include <dpchip/cli/builtin_gsd.hpp>
 #include <dpchip/cli/input.hpp>
 #include <dpchip/cli/stations.hpp>
+#include <dpchip/dp/set_prm.hpp>
 #include <dpchip/gsd/parse.hpp>
 #include <dpchip/master/from_gsd.hpp>
 #include <dpchip/slave/error.hpp>
@@ -19,8 +20,18 @@ gsd::Gsd load(const std::string& path) {
     if (path == "-") return insist(gsd::parse(read_all(path), path));
     if (!path.starts_with("builtin:")) return gsd::load(path);
     const std::string_view text = builtin_gsd(path);
-    if (text.empty()) throw gsd::GsdError{path + ": there is only " + std::string{kBuiltinRemoteIo} + " inside the program"};
+    if (text.empty()) throw gsd::GsdError{path + ": only " + std::string{kBuiltinRemoteIo} + " and " + std::string{kBuiltinDpv1Io} + " are inside the program"};
     return insist(gsd::parse(text, path));
+}
+
+/// Alarms that the GSD does not support are refused, unless it is all that are asked for.
+void enable_alarms(master::SlaveConfig& c, const gsd::Gsd& gsd, const SlaveEntry& entry) {
+    const std::uint8_t supported = gsd.dpv1.slave ? master::supported_alarms(gsd.dpv1) : std::uint8_t{0};
+    if (supported == 0) refuse(entry.alarms_at, "alarms: " + gsd.model_name + " supports none");
+    if (!entry.all_alarms && (entry.alarms & ~unsigned{supported}) != 0) refuse(entry.alarms_at, "alarms: " + gsd.model_name + " does not support all of these");
+    if (dp::alarm_limit(entry.alarm_mode) > gsd.dpv1.alarm_sequence_mode_count)
+        refuse(entry.alarms_at, "alarm_sequence: " + gsd.model_name + " has " + std::to_string(gsd.dpv1.alarm_sequence_mode_count) + " at a time (Alarm_Sequence_Mode_Count)");
+    master::enable_dpv1(c, gsd.dpv1, gsd.fail_safe, entry.alarms, entry.alarm_mode);
 }
 
 }  // namespace
@@ -85,6 +96,7 @@ master::SlaveConfig master_config(const gsd::Gsd& gsd, const SlaveEntry& entry, 
         c.sync = entry.sync;
         c.freeze = entry.freeze;
         if (entry.min_tsdr) c.min_tsdr = *entry.min_tsdr;
+        if (entry.alarms != 0) enable_alarms(c, gsd, entry);
         return c;
     } catch (const gsd::GsdError& e) {
         refuse(entry.at, e.what());

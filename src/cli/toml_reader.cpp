@@ -84,6 +84,21 @@ std::vector<std::string> TomlReader::texts(std::string_view key) {
     return all;
 }
 
+std::vector<std::int64_t> TomlReader::integers(std::string_view key, std::int64_t min, std::int64_t max) {
+    const toml::node* const found = node(key);
+    if (found == nullptr) return {};
+    const toml::array* const array = found->as_array();
+    if (array == nullptr) return {*integer(key, min, max)};
+    std::vector<std::int64_t> all;
+    for (const toml::node& element : *array) {
+        const auto* const number = element.as_integer();
+        if (number == nullptr) refuse(place_of(element), fmt::format("{}: whole numbers are expected", key));
+        if (number->get() < min || number->get() > max) refuse(place_of(element), fmt::format("{}: {} is not in {} .. {}", key, number->get(), min, max));
+        all.push_back(number->get());
+    }
+    return all;
+}
+
 const toml::table* TomlReader::table(std::string_view key) {
     const toml::node* const found = node(key);
     if (found == nullptr) return nullptr;

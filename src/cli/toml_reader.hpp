@@ -37,6 +37,8 @@ public:
     std::optional<Ticks> duration(std::string_view key);
     std::optional<std::vector<std::uint8_t>> octets(std::string_view key);
     std::vector<std::string> texts(std::string_view key);
+    /// A whole number or a list of them.
+    std::vector<std::int64_t> integers(std::string_view key, std::int64_t min, std::int64_t max);
     const toml::table* table(std::string_view key);
     /// The tables of `[[key]]`.
     std::vector<const toml::table*> tables(std::string_view key);

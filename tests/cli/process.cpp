@@ -94,6 +94,12 @@ std::string Program::line() {
     return first;
 }
 
+bool Program::said(const std::string& words) {
+    while (err_.find(words) == std::string::npos)
+        if (!read_some()) return false;
+    return true;
+}
+
 void Program::signal(int number) const {
     if (pid_ > 0) ::kill(pid_, number);
 }

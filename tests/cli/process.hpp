@@ -19,6 +19,8 @@ public:
 
     /// The next line of stdout, without newline; empty when it ends, or says nothing for a minute.
     std::string line();
+    /// Waits until stderr says `words`; false when it ends, or does not for a minute.
+    bool said(const std::string& words);
     /// Sends a signal.
     void signal(int number) const;
     /// Waits for the end; returns the exit code, or 1000 + the signal that killed it.
