@@ -71,6 +71,8 @@ public:
     void outputs_until(Ticks now);
 
     bool drives_data() const { return drives_data_; }
+    /// It does so because the strobe is active, and not for a few nanoseconds more.
+    bool answers_strobe() const { return drives_data_ && release_at_ == core::kNever; }
     std::uint8_t data() const { return value_; }
     PinLevel ready() const { return ready_; }
     /// The strobe of a selected access is active.

@@ -33,7 +33,7 @@ void BusCycles<Trace>::power_up(Ticks reset) {
     move_address(0);
     if (with_ab11_) p.set_pin(ab11_pin(mode_), PinLevel::low);
     for (const PinId db : kDataBus) p.set_pin(db, PinLevel::z);
-    p.advance(p.now() + reset);
+    move_to(p.now() + reset);
     p.set_pin(PinId::reset, PinLevel::low);
     planned_count_ = 0;
     address_lines_ = 0;
@@ -52,15 +52,22 @@ void BusCycles<Trace>::plan(Action action) {
 }
 
 template <class Trace>
+void BusCycles<Trace>::move_to(Ticks to) {
+    if (to < package_->now()) return;
+    if (mover_ != nullptr) mover_(mover_context_, to);
+    else package_->advance(to);
+}
+
+template <class Trace>
 void BusCycles<Trace>::run(Ticks to) {
     std::size_t done = 0;
     for (; done < planned_count_ && planned_[done].at <= to; ++done) {
-        package_->advance(std::max(planned_[done].at, package_->now()));
+        move_to(planned_[done].at);
         apply(planned_[done]);
     }
     std::copy(planned_.begin() + static_cast<std::ptrdiff_t>(done), planned_.begin() + static_cast<std::ptrdiff_t>(planned_count_), planned_.begin());
     planned_count_ -= done;
-    package_->advance(std::max(to, package_->now()));
+    move_to(to);
 }
 
 template <class Trace>
@@ -195,7 +202,7 @@ std::uint8_t BusCycles<Trace>::read(std::uint16_t address) {
     begin(Cycle::read, address);
     finish(Cycle::read, 0);
     run(rose_ - Ticks{1});
-    package_->advance(std::max(rose_, package_->now()));
+    move_to(rose_);
     unsigned value = 0;
     for (std::size_t i = 0; i < kDataBus.size(); ++i) value |= (package_->pin(kDataBus[i]) != PinLevel::low ? 1u : 0u) << i;
     run(rose_);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A processor on the bus pins: read and write cycles of the four modes, edge by edge (8.1.2, 10.7.2 to 10.7.5).
 //
-// It moves the package's time, so it belongs where nothing else does: tests, example boards, the SystemC socket. Lines that
-// hold beyond a strobe move in the next cycle or in settle(), each at its own time.
+// It moves time while its cycles last: the package's own, or that of a whole board through set_mover(). Lines that hold
+// beyond a strobe move in the next cycle or in settle(), each at its own time.
 //
 // Not modelled: a particular processor. AB11 is moved on boards that use it; the decoder inputs of the synchronous Intel
 // mode are 0.
@@ -39,6 +39,11 @@ public:
     /// Lets time pass up to `to`; the last cycle's lines move meanwhile.
     void advance(Ticks to);
 
+    /// Who lets time pass: `mover(context, to)` must bring the package to `to`. At first the package itself.
+    void set_mover(void (*mover)(void* context, Ticks to), void* context) {
+        mover_ = mover;
+        mover_context_ = context;
+    }
     BusTimes& times() { return times_; }
     Package<Trace>& package() { return *package_; }
     ProcessorMode mode() const { return mode_; }
@@ -72,6 +77,7 @@ private:
     void plan(Action action);
     void plan_pin(Ticks at, PinId pin, bool high) { plan({at, Line::pin, pin, to_level(high), 0}); }
     void run(Ticks to);
+    void move_to(Ticks to);
     void apply(const Action& action);
     void move_address(std::uint16_t lines);
     PinId strobe_pin(Cycle cycle) const;
@@ -83,6 +89,8 @@ private:
     Ticks wait_for_end(const CycleNumbers& n);
 
     Package<Trace>* package_;
+    void (*mover_)(void*, Ticks) = nullptr;
+    void* mover_context_ = nullptr;
     ProcessorMode mode_;
     bool with_ab11_;
     BusTimes times_;

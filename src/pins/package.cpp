@@ -82,23 +82,44 @@ Ticks Package<Trace>::next() const {
 
 template <class Trace>
 void Package<Trace>::advance(Ticks to) {
-    DPCHIP_ASSERT(to >= now_);
-    for (Ticks at = next(); at < to; at = next()) run_to(at);
-    run_to(to);
+    run(to);
+    sample();
 }
 
 template <class Trace>
-void Package<Trace>::run_to(Ticks at) {
+void Package<Trace>::run(Ticks to) {
+    DPCHIP_ASSERT(to >= now_);
+    for (Ticks at = next(); at < to; at = next()) run_to(at, true);
+    run_to(to, false);
+}
+
+template <class Trace>
+void Package<Trace>::sample() {
+    if (options_.line != LineSide::pins) return;
+    uart_.sample(chip_);
+    drain_chip();
+    drain_uart();
+}
+
+template <class Trace>
+void Package<Trace>::set_rxd(Ticks at, PinLevel level) {
+    if (at > now_) run(at);
+    set_pin(PinId::rxd, level);
+}
+
+template <class Trace>
+void Package<Trace>::run_to(Ticks at, bool samples) {
     now_ = at;
-    move_chip(at);
+    move_chip(at, samples);
     serve_bus();
     update_clkout();
 }
 
 template <class Trace>
-void Package<Trace>::move_chip(Ticks at) {
-    if (options_.line == LineSide::pins) uart_.advance(chip_, at);
-    else chip_.advance(at);
+void Package<Trace>::move_chip(Ticks at, bool samples) {
+    if (options_.line != LineSide::pins) chip_.advance(at);
+    else if (samples) uart_.advance(chip_, at);
+    else uart_.run(chip_, at);
     drain_chip();
     drain_uart();
 }
@@ -322,7 +343,7 @@ void Package<Trace>::bus_pin_changed(PinId pin) {
 /// address of a multiplexed bus may come before it lets go.
 template <class Trace>
 void Package<Trace>::check_contention() {
-    if (contention_noted_ || !biu_.busy() || !in_.is_high(PinId::xtest0)) return;
+    if (contention_noted_ || !biu_.answers_strobe() || !in_.is_high(PinId::xtest0)) return;
     for (const PinId pin : kDataBus) {
         const bool against = (driven_ & bit_of(pin)) != 0 && to_level(in_.is_high(pin)) != out_[slot(pin)];
         if (!against) continue;

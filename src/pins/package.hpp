@@ -4,8 +4,8 @@
 // A board moves inputs with set_pin() at now() and time with advance(); outputs leave their edges in a queue. The package
 // calls nobody and allocates nothing; a copy is a snapshot.
 //
-// Order within one tick: the chip's timers, the line, the processor interface, CLKOUT; then what the board does at that
-// tick, in the order of its calls.
+// Order within one tick: the chip's timers, the processor interface, CLKOUT, samples of RXD; then what the board does at
+// that tick, in the order of its calls. (A line that couples stations without delay brings its edges before the samples.)
 //
 // Not modelled: volts, currents and slopes, undefined levels, the test modes of XTEST1, a stopped clock.
 #pragma once
@@ -101,6 +101,16 @@ public:
     /// At any time; the pull-up shows at once.
     void set_options(const PackageOptions& options);
 
+    // ---- LineSide::pins: a BitStation ------------------------------------------------------------------------------
+    /// advance() in two steps, for stations that are coupled without delay: all but the samples of RXD at `to`,
+    void run(Ticks to);
+    /// and these.
+    void sample();
+    /// RXD takes a level at `at`, which is not before now().
+    void set_rxd(Ticks at, PinLevel level);
+    /// What the line driver sees.
+    PinLevel txd() const { return pin(PinId::txd); }
+
     // ---- LineSide::telegrams: a segment::Station ------------------------------------------------------------------
     void hear(const fdl::Transmission& t);
     void hear_character(const fdl::Character& c);
@@ -113,8 +123,8 @@ public:
 private:
     static constexpr std::size_t kSlots = kPins + 1;
 
-    void run_to(Ticks at);
-    void move_chip(Ticks at);
+    void run_to(Ticks at, bool samples);
+    void move_chip(Ticks at, bool samples);
     void serve_bus();
     void drain_chip();
     void drain_uart();
