@@ -58,10 +58,9 @@ bool run(const gsd::Gsd& gsd, std::uint8_t publishers, std::uint8_t subscribers,
     pass(3);
     for (Station& s : stations) s.samples = s.wrong = 0;
     pass(cycles);
-    std::uint64_t samples = 0, wrong = 0;
+    unsigned long long samples = 0, wrong = 0;
     for (const Station& s : stations) samples += s.samples, wrong += s.wrong;
-    std::printf("%u publishers, %u subscribers, %u cycles: %llu samples, %llu wrong or too old\n", publishers, subscribers, cycles,
-                static_cast<unsigned long long>(samples), static_cast<unsigned long long>(wrong));
+    std::printf("%u publishers, %u subscribers, %u cycles: %llu samples, %llu wrong or too old\n", publishers, subscribers, cycles, samples, wrong);
     return good && wrong == 0 && samples == std::uint64_t{cycles} * publishers * subscribers;
 }
 

@@ -14,7 +14,7 @@
 namespace dpchip::cli {
 namespace {
 
-constexpr std::array<const char*, kEventKinds> kNames{"power_off", "power_on", "unplug", "plug", "diagnosis", "alarm", "status", "global_control", "fault", "mode", "io"};
+constexpr std::array<const char*, kEventKinds> kNames{"power_off", "power_on", "unplug", "plug", "diagnosis", "alarm", "status", "global_control", "fault", "mode", "io", "switch_over"};
 
 /// A slave of the file, by its address or its name.
 std::size_t slave_of(TomlReader& t, const LineConfig& config) {
@@ -77,6 +77,7 @@ void read_deed(TomlReader& t, EventEntry& e, const LineConfig& config) {
         e.io = t.text("io").value_or("echo");
         check_io(e.io, t.place("io"));
         break;
+    case EventKind::switch_over: break;
     }
 }
 

@@ -83,6 +83,7 @@ SlaveEntry read_slave(const toml::table& table, const std::string& file) {
     s.group = static_cast<std::uint8_t>(t.integer("group", 0, 255).value_or(0));
     s.sync = t.boolean("sync").value_or(false);
     s.freeze = t.boolean("freeze").value_or(false);
+    s.dpv2 = read_dpv2(t, file);
     read_enabled_alarms(t, s);
     t.finish();
     return s;
@@ -97,6 +98,7 @@ MasterEntry read_master(const toml::table& table, const std::string& file, LineC
     m.min_cycle = t.duration("cycle").value_or(Ticks{});
     m.max_retry = static_cast<std::uint8_t>(t.integer("max_retry", 0, 15).value_or(1));
     m.gap_factor = static_cast<std::uint8_t>(t.integer("gap_factor", 0, 100).value_or(0));
+    m.dpv2 = read_master_dpv2(t);
     if (const auto mode = t.word("mode", {"offline", "stop", "clear", "operate"})) m.mode = static_cast<master::Mode>(*mode);
     if (const auto baud = t.text_or_number("baud")) {
         const auto rate = parse_baud(*baud);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <dpchip/cli/dpv2_config.hpp>
 #include <dpchip/cli/failure.hpp>
 #include <dpchip/cli/record_config.hpp>
 #include <dpchip/cli/units.hpp>
@@ -44,6 +45,7 @@ struct SlaveEntry {
     std::optional<std::uint32_t> watchdog_ms{};
     std::uint8_t group = 0;
     bool sync = false, freeze = false;
+    Dpv2Entry dpv2{};
     std::uint8_t alarms = 0;            ///< types it enables and acknowledges: bits of DPV1_Status_2
     bool all_alarms = false;            ///< of these, whatever the GSD supports
     std::uint8_t alarm_mode = 0;        ///< Alarm_Mode: 0 one of each type at a time, 1..7 see dp::alarm_limit()
@@ -58,10 +60,11 @@ struct MasterEntry {
     std::uint8_t max_retry = 1;
     std::uint8_t gap_factor = 0;
     master::Mode mode = master::Mode::operate;
+    MasterDpv2Entry dpv2{};
 };
 
-enum class EventKind : std::uint8_t { power_off, power_on, unplug, plug, diagnosis, alarm, status, global_control, fault, mode, io };
-inline constexpr std::size_t kEventKinds = 11;
+enum class EventKind : std::uint8_t { power_off, power_on, unplug, plug, diagnosis, alarm, status, global_control, fault, mode, io, switch_over };
+inline constexpr std::size_t kEventKinds = 12;
 const char* name(EventKind kind);
 /// What the slave's own side does: possible on a live line, too.
 constexpr bool is_of_the_slave(EventKind kind) {

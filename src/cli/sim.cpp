@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <dpchip/cli/commands.hpp>
+#include <dpchip/cli/dpv2_report.hpp>
 #include <dpchip/cli/live_view.hpp>
 #include <dpchip/cli/log.hpp>
 #include <dpchip/cli/settings.hpp>
@@ -67,6 +68,7 @@ void report_text(const Simulation& s, double seconds) {
                 static_cast<unsigned long long>(s.faults()), static_cast<unsigned long long>(s.judge().telegrams()),
                 static_cast<unsigned long long>(s.judge().total()));
     report_alarms(s);
+    report_dpv2(s);
     for (std::size_t n = 0; n < s.members().size(); ++n)
         if (s.application().checked(n).wrong != 0) spdlog::error("{}: {}", title(s.members()[n].entry), s.application().checked(n).first_wrong);
     for (const segment::Violated& v : s.judge().violations().first(std::min<std::size_t>(s.judge().violations().size(), 10)))
@@ -106,6 +108,7 @@ void report_json(const Simulation& s, double seconds) {
         e["wrong"] = c.wrong;
         e["retries"] = m.slave(n).counters().retries;
         e["lost"] = m.slave(n).counters().lost;
+        report_dpv2(s, n, e);
         j["slaves"].push_back(std::move(e));
     }
     std::printf("%s\n", j.dump(2).c_str());

@@ -25,6 +25,7 @@ master::MasterConfig master_config_of(const LineConfig& config) {
     m.gap_factor = entry.gap_factor;
     m.min_cycle = entry.min_cycle;
     m.mode = entry.mode;
+    apply_dpv2(m, entry.dpv2);
     if (config.slot_time) m.slot_time = config.slot_time->at(m.baud);
     return m;
 }
@@ -62,7 +63,10 @@ Simulation::Simulation(const LineConfig& config) : config_{config} {
     for (const SlaveEntry& entry : config_.slaves) {
         if (entry.address == 126) refuse(entry.at, "a slave with address 126 has to get another one first");
         const gsd::Gsd& gsd = shelf_.get(entry.gsd, entry.at);
-        if (const auto added = master_->add(master_config(gsd, entry, kWatchdogMs)); !added)
+        master::SlaveConfig slave = master_config(gsd, entry, kWatchdogMs);
+        apply_dpv2(slave, gsd, entry.dpv2, config_.masters.empty() ? MasterDpv2Entry{} : config_.masters[0].dpv2,
+                   [this](std::uint8_t address) { return inputs_of(address); });
+        if (const auto added = master_->add(slave); !added)
             refuse(entry.at, title(entry) + ": " + master::name(added.error()));
         Member member{entry, make_slave(gsd, entry), {}, true, false, 0};
         members_.push_back(std::move(member));
@@ -74,6 +78,24 @@ Simulation::Simulation(const LineConfig& config) : config_{config} {
     segment_.observe(judge_);
     segment_.set_faults(segment::FaultRef{fault_source_});
     if (config_.trace) trace_ = std::make_unique<TraceFile>(*config_.trace, segment_, live::Recorder::Options{"simulated line", config_.link_type, 0, master_index_});
+}
+
+/// What the slave with this address publishes.
+std::optional<std::uint8_t> Simulation::inputs_of(std::uint8_t address) {
+    for (const SlaveEntry& entry : config_.slaves)
+        if (entry.address == address) return static_cast<std::uint8_t>(configure(shelf_.get(entry.gsd, entry.at), entry).input_octets);
+    return std::nullopt;
+}
+
+/// The master dies at this very moment. A backup with its address and its state hears silence and goes on.
+void Simulation::switch_over() {
+    const master::Mode mode = master_->mode();
+    segment_.detach(master_index_);
+    master_->set_mode(master::Mode::offline);
+    master_index_ = *segment_.attach(*master_, "backup master");
+    segment_.settle();
+    master_->set_mode(mode);
+    segment_.touch(master_index_);
 }
 
 void Simulation::attach(Member& m) {
@@ -164,6 +186,7 @@ void Simulation::happen(const EventEntry& e) {
     case EventKind::io: return happen_to(m, e);
     case EventKind::global_control: return control(e);
     case EventKind::fault: return arm(e);
+    case EventKind::switch_over: return switch_over();
     case EventKind::mode:
         master_->set_mode(e.mode);
         segment_.touch(master_index_);

@@ -76,6 +76,8 @@ private:
     void happen_to(Member& m, const EventEntry& event);
     void tell();
     void control(const EventEntry& event);
+    void switch_over();
+    std::optional<std::uint8_t> inputs_of(std::uint8_t address);
     void advance_to(Ticks end, std::optional<std::uint64_t> cycles);
 
     LineConfig config_;

@@ -76,6 +76,7 @@ std::unique_ptr<slave::VirtualSlave> make_slave(const gsd::Gsd& gsd, const Slave
     setup.firmware_delay = entry.firmware_delay;
     setup.user_watchdog = entry.user_watchdog;
     setup.records = entry.records;
+    apply_dpv2(setup, entry.dpv2);
     if (entry.identification) setup.identification = identification(gsd, *entry.identification);
     try {
         return std::make_unique<slave::VirtualSlave>(gsd, setup);

@@ -10,6 +10,7 @@ namespace dpchip::master {
 namespace {
 
 constexpr std::size_t kStatusOctets = 3;
+constexpr std::uint8_t kGroup8 = 0x80;
 constexpr Ticks kTwelfth{5'000};  // 1/12 us, the unit of TBASE_DP
 
 struct Status {
@@ -45,7 +46,10 @@ BlockAdded add_isochron(SlaveConfig& slave, const dp::IsoMPrm& times) {
     std::array<std::uint8_t, dp::kIsoMBlock> block{};
     const Status status{.octet_1 = dp::kDpv1Enable | dp::kFailSafe, .octet_3 = dp::kPrmStructure | dp::kIsoMReq};
     const BlockAdded added = append(slave, dp::encode(times, block), block, status);
-    if (added) slave.fail_safe = true;
+    if (!added) return added;
+    slave.fail_safe = true;
+    slave.sync = slave.freeze = false;
+    slave.group = static_cast<std::uint8_t>(slave.group & ~unsigned{kGroup8});
     return added;
 }
 

@@ -23,7 +23,7 @@ using BlockAdded = core::Result<std::size_t, ConfigError>;
 
 /// Makes a subscriber of it: a DXB_Linktable. At most 29 links; the slave needs a watchdog for them.
 BlockAdded add_links(SlaveConfig& slave, std::span<const dp::DxbLink> links);
-/// Isochron Mode: DPV1_Enable, Fail_Safe and IsoM_Req besides.
+/// Isochron Mode (figure 7-18): DPV1_Enable, Fail_Safe and IsoM_Req besides; no Sync_Req, no Freeze_Req, not in group 8.
 BlockAdded add_isochron(SlaveConfig& slave, const dp::IsoMPrm& times);
 BlockAdded add_clock(SlaveConfig& slave, const dp::TimeAr& time);
 BlockAdded add_prm_cmd(SlaveConfig& slave, const dp::PrmCmd& command);

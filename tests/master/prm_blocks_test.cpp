@@ -44,6 +44,22 @@ TEST(PrmBlocks, stand_behind_each_other_and_set_their_bits) {
     EXPECT_EQ(Octets(s.user_prm.begin(), s.user_prm.begin() + 3), (Octets{0xC0, 0x00, 0x98}));
 }
 
+// proves: VPC3C 7.3.2-06, VPC3C 7.3.2-21..24
+TEST(PrmBlocks, of_an_isochronous_slave_make_the_Set_Prm_of_figure_7_18) {
+    SlaveConfig s = slave();
+    s.ident = 0x4711;
+    s.sync = s.freeze = true;
+    s.group = 0x83;
+    ASSERT_TRUE(add_isochron(s, {.version = 1, .tbase_dp = 1500, .t_dp = 8}));
+    const Octets prm = set_prm_data(s);
+    ASSERT_EQ(prm.size(), 10u + dp::kIsoMBlock);
+    EXPECT_EQ(prm[0], 0x88) << "Lock_Req and WD_On; Sync_Req = Freeze_Req = 0";
+    EXPECT_EQ(prm[6], 0x03) << "Group_8 = 0";
+    EXPECT_EQ(prm[7] & 0x40, 0x40) << "Fail_Safe";
+    EXPECT_EQ(prm[9], 0x18) << "IsoM_Req and Prm_Structure";
+    EXPECT_EQ(prm[11], 4) << "Structure_Type";
+}
+
 TEST(PrmBlocks, that_cannot_be_change_nothing) {
     const auto refused = [](SlaveConfig s, auto add) {
         const Octets before = s.user_prm;
