@@ -56,7 +56,8 @@ Deed do_to(slave::VirtualSlave& s, const EventEntry& e) {
     case EventKind::plug:
     case EventKind::global_control:
     case EventKind::fault:
-    case EventKind::mode: break;
+    case EventKind::mode:
+    case EventKind::switch_over: break;
     }
     refuse(e.at, fmt::format("{} is not the slave's own doing", name(e.kind)));
 }
