@@ -1,7 +1,7 @@
 # cmake --install: program, headers, libraries, exported targets and dpchip.pc.
 #
-# Every layer is dpchip::<layer> (dpchip::driver is headers only); the C library is dpchip::capi (shared) and
-# dpchip::capi_static. Folders whose targets a build leaves out (DPCHIP_TOOLS=OFF) are left out here too.
+# Every layer is dpchip::<layer> (dpchip::driver is headers only, dpchip::tlm is there when SystemC is); the C library is
+# dpchip::capi (shared) and dpchip::capi_static. Folders whose targets a build leaves out (DPCHIP_TOOLS=OFF) are left out here too.
 include(CMakePackageConfigHelpers)
 
 get_property(dpchip_layers GLOBAL PROPERTY DPCHIP_LAYERS)

@@ -103,6 +103,25 @@ Monitor::Monitor(const sc_core::sc_module_name& name, Line& line) : sc_core::sc_
 
 void Monitor::write(const Telegram& t) { seen.push_back(t); }
 
+namespace {
+
+std::string& kept() {
+    static std::string texts;
+    return texts;
+}
+
+}  // namespace
+
+Reports::Reports(const char* type) {
+    sc_core::sc_report_handler::set_actions(type, sc_core::SC_CACHE_REPORT);
+    sc_core::sc_report_handler::set_handler([](const sc_core::sc_report& report, const sc_core::sc_actions& actions) {
+        if (actions == sc_core::SC_CACHE_REPORT) kept() += std::string{report.get_msg()} + '\n';
+        else sc_core::sc_report_handler::default_handler(report, actions);
+    });
+}
+
+const std::string& Reports::text() { return kept(); }
+
 void until(const sc_time& time) {
     if (time > sc_core::sc_time_stamp()) sc_core::wait(time - sc_core::sc_time_stamp());
 }

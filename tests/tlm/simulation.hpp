@@ -64,6 +64,14 @@ struct Monitor : sc_core::sc_module, ::tlm::tlm_analysis_if<Telegram> {
     std::vector<Telegram> seen;
 };
 
+/// From its construction on, keeps the reports of one message type instead of printing them.
+class Reports {
+public:
+    explicit Reports(const char* type);
+    /// Their texts, a line each.
+    static const std::string& text();
+};
+
 /// Waits until `time` of the simulation.
 void until(const sc_time& time);
 inline sc_time ns(std::uint64_t n) { return sc_time::from_value(n * 1000); }

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// A board around the package for tests: its wires, a processor that makes asynchronous Intel cycles, and a UART that plays
+// the master bit by bit.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include <dpchip/tlm/package.hpp>
+
+#include "tlm/simulation.hpp"
+
+namespace dpchip::tlm::test {
+
+using sc_dt::sc_logic;
+
+struct PinBoard : sc_core::sc_module {
+    using Wire = sc_core::sc_signal<sc_logic>;
+
+    explicit PinBoard(const sc_core::sc_module_name& name, const PackageSettings& settings = {});
+    ~PinBoard() override;
+
+    /// RESET for 200 ns.
+    void power_up();
+    /// Cycles with every set-up and hold time to spare; the strobe lasts until XREADY is there, 140 ns.
+    std::uint8_t read(std::uint16_t address);
+    void write(std::uint16_t address, std::uint8_t value);
+    /// What is on DB; X where drivers disagree, Z where nobody drives.
+    std::string data() const;
+    void drive_data(const sc_logic& level, std::uint8_t value = 0xFF);
+
+    sc_core::sc_vector<Wire> ab{"ab", 11};
+    sc_core::sc_vector<sc_core::sc_signal_resolved> db{"db", 8};
+    Wire xcs{"xcs", sc_dt::SC_LOGIC_1}, xrd{"xrd", sc_dt::SC_LOGIC_1}, xwr{"xwr", sc_dt::SC_LOGIC_1}, reset{"reset", sc_dt::SC_LOGIC_0};
+    Wire xready{"xready"}, x_int{"x_int", sc_dt::SC_LOGIC_1}, xdataexch{"xdataexch", sc_dt::SC_LOGIC_1};
+    Wire rxd{"rxd", sc_dt::SC_LOGIC_1}, txd{"txd", sc_dt::SC_LOGIC_1}, rts{"rts", sc_dt::SC_LOGIC_0};
+    Package package;
+    std::function<void()> program;
+
+private:
+    void run();
+    void address(std::uint16_t a);
+};
+
+/// Edges of a wire, for UARTs and for times.
+struct Scope : sc_core::sc_module {
+    struct Edge {
+        Ticks at;
+        bool high;
+    };
+    Scope(const sc_core::sc_module_name& name, const sc_core::sc_signal<sc_logic>& wire);
+    /// The level just after `at`; high before the first edge.
+    bool level(Ticks at) const;
+
+    std::vector<Edge> edges;
+
+private:
+    void note();
+    const sc_core::sc_signal<sc_logic>* wire_;
+};
+
+/// Puts octets on a wire as UART characters with even parity from `at` on; for an SC_THREAD.
+void send_bits(PinBoard::Wire& wire, Ticks at, Ticks bit, const Octets& octets);
+
+/// The octets of characters that begin at most a character apart, with the tick of the first start bit.
+struct Burst {
+    Ticks start;
+    Octets octets;
+};
+/// Reads a scope as a UART does; parity and stop bits are checked with EXPECT.
+std::vector<Burst> bursts(const Scope& scope, Ticks bit);
+
+}  // namespace dpchip::tlm::test
