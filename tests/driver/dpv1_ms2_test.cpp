@@ -24,6 +24,7 @@ protected:
 };
 INSTANTIATE_TEST_SUITE_P(AllChips, Ms2, ::testing::ValuesIn(kDpv1Kinds), [](const auto& param) { return std::string{param.param.name}; });
 
+// proves: VPC3C 1-03, E031
 TEST_P(Ms2, AConnectionWithoutAnyClass1MasterAsTheReferenceShows) {
     EXPECT_EQ(t.check("68 19 19 68 88 82 5D 31 32 57 00 00 00 03 E8 01 00 00 00 00 00 00 02 00 02 00 00 00 00 11 16"),
               hex("68 09 09 68 82 88 08 32 31 56 30 00 64 5F 16")) << "C118";
