@@ -14,9 +14,9 @@ namespace dpchip::pins {
 class Clk {
 public:
     /// A rising edge lies at `phase`, any tick of the first period.
-    explicit Clk(Ticks phase = {}) : origin_{phase} {}
+    explicit Clk(Ticks phase = {}) : origin_{phase}, count_{phase > Ticks{} ? 1 : 0} {}
 
-    /// Rising edges up to and including `t`, counted from the phase on; negative before it.
+    /// Rising edges after time 0, up to and including `t`.
     std::int64_t edges_until(Ticks t) const { return count_ + floor_div(t - origin_); }
     /// The first rising edge at or after `t`.
     Ticks edge_from(Ticks t) const { return origin_ + core::kClk * -floor_div(origin_ - t); }
@@ -54,7 +54,7 @@ private:
     }
 
     Ticks origin_{};          ///< a rising edge
-    std::int64_t count_ = 0;  ///< its number
+    std::int64_t count_;      ///< its number
     Ticks rose_ = kNone, fell_ = kNone;
 };
 
