@@ -12,12 +12,15 @@
 #include <dpchip/cli/log.hpp>
 #include <dpchip/cli/settings.hpp>
 #include <dpchip/cli/simulation.hpp>
+#include <dpchip/cli/stop_signal.hpp>
 
 namespace dpchip::cli {
 namespace {
 
 struct Arguments {
     std::string file, duration, baud, trace;
+    std::string vcd, vcd_from, vcd_to, vcd_timescale = "1ps";
+    std::vector<std::string> signals;
     int link_type = 147;
     std::uint64_t cycles = 0;
     std::vector<std::string> options;
@@ -114,7 +117,26 @@ void report_json(const Simulation& s, double seconds) {
     std::printf("%s\n", j.dump(2).c_str());
 }
 
+Ticks moment(const char* option, const std::string& text, Ticks otherwise) {
+    if (text.empty()) return otherwise;
+    const std::optional<Ticks> at = parse_duration(text);
+    if (!at) throw Failure{ExitCode::usage, std::string{option} + ' ' + text + ": write 2ms, 250us or 1.5s"};
+    return *at;
+}
+
+WaveOptions wave_options(const Arguments& a) {
+    WaveOptions o{a.vcd, a.signals, moment("--from", a.vcd_from, {}), moment("--to", a.vcd_to, core::kNever), {}};
+    const auto timescale = trace::parse_timescale(a.vcd_timescale);
+    if (!timescale) throw Failure{ExitCode::usage, "--vcd-timescale " + a.vcd_timescale + ": write 1, 10 or 100 and fs, ps, ns, us, ms or s, as in 100ns"};
+    o.timescale = *timescale;
+    if (o.from >= o.to) throw Failure{ExitCode::usage, "--from " + a.vcd_from + " is not before --to " + a.vcd_to};
+    const bool used = !a.signals.empty() || !a.vcd_from.empty() || !a.vcd_to.empty() || a.vcd_timescale != "1ps";
+    if (a.vcd.empty() && used) throw Failure{ExitCode::usage, "--signals, --from, --to and --vcd-timescale are about waveforms: say --vcd FILE, too"};
+    return o;
+}
+
 ExitCode run(const Arguments& a) {
+    const WaveOptions waves = wave_options(a);
     LineConfig config = read_line_config(a.file);
     if (!a.baud.empty()) config.baud = parse_baud(a.baud);
     if (!a.baud.empty() && !config.baud) throw Failure{ExitCode::usage, "--baud " + a.baud + ": none of the ten rates"};
@@ -135,10 +157,13 @@ ExitCode run(const Arguments& a) {
         cycles = a.cycles;
         duration.reset();
     }
+    const StopSignal signal;
     Simulation simulation{config};
+    if (!waves.path.empty()) simulation.show_waves(waves);
     const auto begin = std::chrono::steady_clock::now();
     simulation.run(duration, cycles);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (StopSignal::stopped()) spdlog::warn("stopped after {} of line time", time_text(simulation.now()));
     if (a.json) report_json(simulation, seconds);
     else report_text(simulation, seconds);
     for (std::size_t n = 0; n < simulation.members().size(); ++n)
@@ -159,8 +184,15 @@ void add_sim(CLI::App& app, Job& job) {
     c->add_option("--option", a->options, "an option of the model, for all slaves")->type_name("NAME=VALUE")->expected(1)->take_all();
     c->add_option("--trace", a->trace, "record everything on the line")->type_name("FILE.pcapng");
     c->add_option("--link-type", a->link_type, "link type of the trace")->check(CLI::IsMember({147, 257}));
+    c->add_option("--vcd", a->vcd, "write waveforms: levels of the line bit by bit, pins and state machines of the slaves")->type_name("FILE.vcd");
+    c->add_option("--signals", a->signals, "only these: SCOPE.NAME, with * and ?; several with commas: 'Press.*XD,line.*'; an unknown one lists all")
+        ->type_name("PATTERN")->delimiter(',')->expected(1)->take_all();
+    c->add_option("--from", a->vcd_from, "waveforms from this line time on")->type_name("TIME");
+    c->add_option("--to", a->vcd_to, "waveforms up to this line time")->type_name("TIME");
+    c->add_option("--vcd-timescale", a->vcd_timescale, "resolution of the waveforms: 1ps (default), 10ns, 100ns, ...")->type_name("UNIT");
     c->add_flag("--json", a->json, "the report as JSON");
     c->footer(footer("  dpchip sim examples/scenario.toml --trace scenario.pcapng\n"
+                     "  dpchip sim examples/scenario.toml --for 20ms --vcd scenario.vcd --signals 'line.*,Press.*'\n"
                      "Line time is virtual and exact; the file decides what happens when (docs/config.md).\n"
                      "Exit code 1: a slave not in data exchange at the end, wrong inputs, or rules of the bus broken without injected fault."));
     c->callback([a, &job] { job = [a] { return run(*a); }; });

@@ -6,6 +6,7 @@
 
 #include <dpchip/cli/log.hpp>
 #include <dpchip/cli/simulation.hpp>
+#include <dpchip/cli/stop_signal.hpp>
 #include <dpchip/cli/slave_events.hpp>
 
 namespace dpchip::cli {
@@ -196,12 +197,13 @@ void Simulation::happen(const EventEntry& e) {
 
 void Simulation::advance_to(Ticks end, std::optional<std::uint64_t> cycles) {
     const auto look = [&] {
+        if (waves_) look_at_waves();
         if (!reached_ && master_->all_exchanging()) {
             reached_ = segment_.now();
             master_->clear_statistics();  // the summary is about data exchange, not about the way to it
         }
         tell();
-        return cycles && reached_ && master_->cycle().cycles >= *cycles;
+        return StopSignal::stopped() || (cycles && reached_ && master_->cycle().cycles >= *cycles);
     };
     segment_.run_until(look, end - segment_.now());
 }
@@ -212,10 +214,30 @@ void Simulation::run(std::optional<Ticks> duration, std::optional<std::uint64_t>
     for (const EventEntry& event : config_.events) {
         if (event.when > end) refuse(event.at, "this event is later than the end of the scenario");
         advance_to(event.when, {});
+        if (StopSignal::stopped()) return;
         happen(event);
     }
     advance_to(end, duration ? std::optional<std::uint64_t>{} : cycles);
     segment_.settle();
+}
+
+void Simulation::show_waves(const WaveOptions& options) {
+    std::vector<std::string> names;
+    for (const Member& m : members_) {
+        std::string scope = m.slave ? m.slave->name() : title(m.entry);
+        std::replace(scope.begin(), scope.end(), '.', '_');
+        if (std::find(names.begin(), names.end(), scope) != names.end()) scope += ' ' + std::to_string(m.entry.address.value_or(126));
+        names.push_back(scope);
+    }
+    waves_ = std::make_unique<WaveFile>(options, segment_, names);
+    look_at_waves();
+}
+
+void Simulation::look_at_waves() {
+    waves_->set_master(master_index_);
+    for (std::size_t n = 0; n < members_.size(); ++n)
+        waves_->look(n, members_[n].slave.get(), members_[n].plugged ? members_[n].index : segment::kNobody);
+    waves_->settle();
 }
 
 bool Simulation::good() const {

@@ -12,6 +12,7 @@
 #include <dpchip/cli/line_config.hpp>
 #include <dpchip/cli/stations.hpp>
 #include <dpchip/cli/trace_file.hpp>
+#include <dpchip/cli/wave_file.hpp>
 #include <dpchip/master/master.hpp>
 #include <dpchip/segment/judge.hpp>
 #include <dpchip/segment/segment.hpp>
@@ -28,6 +29,8 @@ public:
     /// Runs for `duration`, or until so many cycles with all slaves in data exchange and no event ahead are over; at most
     /// an hour of virtual time. Throws Failure when an event cannot happen.
     void run(std::optional<Ticks> duration, std::optional<std::uint64_t> cycles);
+    /// Writes waveforms from now on. Throws Failure.
+    void show_waves(const WaveOptions& options);
 
     struct Member {
         SlaveEntry entry;
@@ -79,6 +82,7 @@ private:
     void switch_over();
     std::optional<std::uint8_t> inputs_of(std::uint8_t address);
     void advance_to(Ticks end, std::optional<std::uint64_t> cycles);
+    void look_at_waves();
 
     LineConfig config_;
     GsdShelf shelf_;
@@ -102,6 +106,7 @@ private:
     std::uint64_t faults_ = 0;
     Faults fault_source_{{}, &faults_};
     std::unique_ptr<TraceFile> trace_;
+    std::unique_ptr<WaveFile> waves_;
     std::optional<Ticks> reached_;
     std::uint8_t modes_ = 0;  ///< Sync and Freeze in force, as Control_Command bits
 };
