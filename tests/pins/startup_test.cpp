@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,8 @@ public:
         return result_;
     }
     pins::Package<>& package() { return package_; }
+    /// The processor reads the RAM from `at` on, whenever it has nothing else to do.
+    void keep_bus_busy_from(Ticks at) { busy_from_ = at; }
 
 private:
     static regmap::Options options() {
@@ -79,7 +82,8 @@ private:
 
     void run_to(Ticks end) {
         while (line_.now() < end) {
-            line_.advance(std::min(end, std::max(line_.next(), line_.now() + Ticks{1})));
+            if (line_.now() >= busy_from_ && end - line_.now() > core::microseconds(1)) static_cast<void>(bus_.read(0x7F0));
+            else line_.advance(std::min(end, std::max(line_.next(), line_.now() + Ticks{1})));
             while (!package_.edges().empty()) static_cast<void>(package_.edges().pop());
             if (interrupt()) firmware_.on_interrupt();
             while (master_.pending()) {
@@ -96,6 +100,7 @@ private:
     pins::BusCycles<> bus_;
     startup::Firmware firmware_;
     bool begun_ = false;
+    Ticks busy_from_ = core::kNever;
     startup::Result result_;
 };
 
@@ -138,6 +143,23 @@ TEST_P(StartUp, Through_pins_ends_as_at_telegram_level) {
     EXPECT_EQ(board.package().violations(0), 0u);
     EXPECT_EQ(findings(board.package()), "");
     EXPECT_TRUE(board.package().chip().findings().empty());
+    EXPECT_EQ(board.package().pin(PinId::xdataexch_sync), PinLevel::low) << "the LED of DATA-EXCH";
+}
+
+// proves: VPC3C 8.2-01, VPC3C 8.2-02
+TEST(DualPort, A_processor_that_never_leaves_the_RAM_alone_delays_nothing_on_the_line) {
+    Board board{ProcessorMode::async_intel, false, Supply::v5};
+    board.keep_bus_busy_from(Ticks{41 * startup::kMillisecond});
+    const startup::Result is = board.run(), reference = startup::telegram_level(startup::Service::interrupt);
+    EXPECT_EQ(startup::difference(is.without_times(), reference.without_times()), "");
+    compare_times(is.telegrams, reference.telegrams);
+    const pins::DpcCounters& c = board.package().dpc();
+    EXPECT_GT(c.collisions, 0u);
+    EXPECT_LT(c.collisions, c.sequencer_accesses);
+    EXPECT_LT(c.longest_wait * 5, 44u) << "less than a fifth of a character at 12 Mbit/s";
+    std::printf("  %llu RAM cycles of the processor, %llu of the Micro Sequencer, which waited %llu CLK, at most %u at a time\n",
+                static_cast<unsigned long long>(c.bus_accesses), static_cast<unsigned long long>(c.sequencer_accesses),
+                static_cast<unsigned long long>(c.collisions), c.longest_wait);
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, StartUp, testing::Values(
