@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstring>
 #include <ostream>
 
 #include <dpchip/core/assert.hpp>
@@ -49,7 +50,9 @@ std::vector<std::string_view> parts(std::string_view path) {
 
 std::int64_t VcdTimescale::units(Ticks at) const {
     __extension__ using Wide = __int128;
-    // A tick is 50000/3 fs.
+    // A tick is 50000/3 fs. Nearly twenty minutes of these fit into 64 bits.
+    if (at.n >= 0 && at.n < (std::int64_t{1} << 46) && femtoseconds < (std::int64_t{1} << 40))
+        return (at.n * 100'000 + femtoseconds * 3) / (femtoseconds * 6);
     const Wide twice = static_cast<Wide>(at.n) * 100'000 + static_cast<Wide>(femtoseconds) * 3;
     return static_cast<std::int64_t>(twice / (static_cast<Wide>(femtoseconds) * 6));
 }
@@ -79,7 +82,7 @@ std::optional<VcdTimescale> parse_timescale(std::string_view text) {
 }
 
 VcdWriter::VcdWriter(std::ostream& out, const VcdOptions& options) : out_{out}, options_{options}, comment_{options.comment} {
-    buffer_.reserve(kBuffer + 1024);
+    buffer_.resize(kBuffer);
 }
 
 VcdWriter::Signal VcdWriter::declare(std::string_view scope, std::string_view name, Kind kind, unsigned width, char initial) {
@@ -93,35 +96,53 @@ VcdWriter::Signal VcdWriter::vector(std::string_view scope, std::string_view nam
 }
 VcdWriter::Signal VcdWriter::text(std::string_view scope, std::string_view name) { return declare(scope, name, Kind::text, 1, 'x'); }
 
-void VcdWriter::put(std::string_view octets) { buffer_.append(octets); }
-void VcdWriter::put_number(std::uint64_t value) {
-    std::array<char, 20> digits;
+void VcdWriter::room(std::size_t octets) {
+    if (buffer_.size() - used_ >= octets) return;
+    flush();
+    if (buffer_.size() < octets) buffer_.resize(octets);
+}
+
+void VcdWriter::put(std::string_view octets) {
+    room(octets.size());
+    std::memcpy(buffer_.data() + used_, octets.data(), octets.size());
+    used_ += octets.size();
+}
+
+void VcdWriter::put_stamp(std::int64_t units) {
+    stamp_ = units;
+    std::array<char, 24> digits;
     char* at = digits.data() + digits.size();
+    *--at = '\n';
+    auto rest = static_cast<std::uint64_t>(units);
     do {
-        *--at = static_cast<char>('0' + value % 10);
-        value /= 10;
-    } while (value != 0);
-    buffer_.append(at, digits.data() + digits.size());
+        *--at = static_cast<char>('0' + rest % 10);
+        rest /= 10;
+    } while (rest != 0);
+    *--at = '#';
+    put({at, static_cast<std::size_t>(digits.data() + digits.size() - at)});
 }
 
 void VcdWriter::put(const Declared& d) {
+    room(80 + d.words.size() + d.id.size());
+    char* at = buffer_.data() + used_;
     switch (d.kind) {
-    case Kind::bit: buffer_ += d.level; break;
+    case Kind::bit: *at++ = d.level; break;
     case Kind::vector:
-        buffer_ += 'b';
-        if (d.level == 'x') buffer_ += 'x';
+        *at++ = 'b';
+        if (d.level == 'x') *at++ = 'x';
         else
-            for (unsigned n = d.width; n-- > 0;) buffer_ += static_cast<char>('0' + ((d.value >> n) & 1));
-        buffer_ += ' ';
+            for (unsigned n = d.width; n-- > 0;) *at++ = static_cast<char>('0' + ((d.value >> n) & 1));
+        *at++ = ' ';
         break;
     case Kind::text:
-        buffer_ += 's';
-        put(d.words);
-        buffer_ += ' ';
+        *at++ = 's';
+        at = std::replace_copy(d.words.begin(), d.words.end(), at, ' ', '_');
+        *at++ = ' ';
         break;
     }
-    put(d.id);
-    buffer_ += '\n';
+    at = std::copy(d.id.begin(), d.id.end(), at);
+    *at++ = '\n';
+    used_ = static_cast<std::size_t>(at - buffer_.data());
 }
 
 /// Scopes open and close so that each path stands once where its signals were declared together.
@@ -148,10 +169,9 @@ void VcdWriter::header() {
         put("$var " + std::string{type} + ' ' + std::to_string(d.width) + ' ' + d.id + ' ' + d.name + " $end\n");
     }
     for (std::size_t n = open.size(); n > 0; --n) put("$upscope $end\n");
-    put("$enddefinitions $end\n#");
-    stamp_ = options_.timescale.units(options_.from);
-    put_number(static_cast<std::uint64_t>(stamp_));
-    put("\n$dumpvars\n");
+    put("$enddefinitions $end\n");
+    put_stamp(options_.timescale.units(options_.from));
+    put("$dumpvars\n");
     for (const Declared& d : signals_) put(d);
     put("$end\n");
 }
@@ -166,12 +186,7 @@ bool VcdWriter::stamp(Ticks at) {
     if (!begun_) header();
     if (at > options_.to) return false;
     const std::int64_t units = options_.timescale.units(at);
-    if (units > stamp_) {
-        stamp_ = units;
-        buffer_ += '#';
-        put_number(static_cast<std::uint64_t>(units));
-        buffer_ += '\n';
-    }
+    if (units > stamp_) put_stamp(units);
     ++changes_;
     return true;
 }
@@ -181,7 +196,6 @@ void VcdWriter::set(Ticks at, Signal signal, char level) {
     const bool write = stamp(at);
     signals_[signal].level = level;
     if (write) put(signals_[signal]);
-    if (buffer_.size() >= kBuffer) flush();
 }
 
 void VcdWriter::set_value(Ticks at, Signal signal, std::uint64_t value) {
@@ -192,18 +206,15 @@ void VcdWriter::set_value(Ticks at, Signal signal, std::uint64_t value) {
     d.value = value;
     d.level = '1';
     if (write) put(d);
-    if (buffer_.size() >= kBuffer) flush();
 }
 
 void VcdWriter::set_text(Ticks at, Signal signal, std::string_view value) {
+    if (value.empty()) value = "?";
     if (signal >= signals_.size() || signals_[signal].words == value) return;
     const bool write = stamp(at);
     Declared& d = signals_[signal];
     d.words = value;
-    std::replace(d.words.begin(), d.words.end(), ' ', '_');
-    if (d.words.empty()) d.words = "?";
     if (write) put(d);
-    if (buffer_.size() >= kBuffer) flush();
 }
 
 void VcdWriter::unknown(Ticks at, Signal signal) {
@@ -216,19 +227,15 @@ void VcdWriter::finish(Ticks at) {
     if (finished_) return;
     if (!begun_) header();
     const std::int64_t end = options_.timescale.units(std::min(std::max(at, now_), options_.to));
-    if (end > stamp_) {
-        buffer_ += '#';
-        put_number(static_cast<std::uint64_t>(end));
-        buffer_ += '\n';
-    }
+    if (end > stamp_) put_stamp(end);
     finished_ = true;
     flush();
     out_.flush();
 }
 
 void VcdWriter::flush() {
-    out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-    buffer_.clear();
+    out_.write(buffer_.data(), static_cast<std::streamsize>(used_));
+    used_ = 0;
 }
 
 bool VcdWriter::good() const { return out_.good(); }

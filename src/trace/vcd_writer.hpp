@@ -82,7 +82,7 @@ private:
         Kind kind{};
         unsigned width = 1;
         std::uint64_t value = 0;
-        std::string words;       ///< text
+        std::string words;       ///< text, as it was given
         char level = 'x';        ///< bit; vector: 'x' while unknown, else '1'
     };
 
@@ -92,14 +92,17 @@ private:
     void header();
     void put(const Declared& d);
     void put(std::string_view octets);
-    void put_number(std::uint64_t value);
+    void put_stamp(std::int64_t units);
+    /// Makes room for so many octets.
+    void room(std::size_t octets);
     void flush();
 
     std::ostream& out_;
     VcdOptions options_;
     std::string comment_;
     std::vector<Declared> signals_;
-    std::string buffer_;
+    std::string buffer_;         ///< of a fixed size, filled up to used_
+    std::size_t used_ = 0;
     bool begun_ = false, finished_ = false;
     Ticks now_{};
     std::int64_t stamp_ = -1;
