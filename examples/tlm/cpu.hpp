@@ -29,23 +29,23 @@ struct Cpu : sc_core::sc_module {
         payload.set_data_ptr(&octet);
         payload.set_data_length(1);
         payload.set_streaming_width(1);
-        sc_core::sc_time ahead = time.get_local_time();
+        sc_core::sc_time ahead = time_.get_local_time();
         bus->b_transport(payload, ahead);
         if (payload.is_response_error()) SC_REPORT_ERROR("/cpu", payload.get_response_string().c_str());
-        time.set(ahead);
+        time_.set(ahead);
         return octet;
     }
 
 private:
     void run() {
-        time.reset();
+        time_.reset();
         firmware_init(8, 0x4711);
         for (;;) {
-            time.sync();
+            time_.sync();
             if (x_int.read()) sc_core::wait(x_int.negedge_event());
             firmware_isr();
             firmware_main_loop();
         }
     }
-    tlm_utils::tlm_quantumkeeper time;
+    tlm_utils::tlm_quantumkeeper time_;
 };

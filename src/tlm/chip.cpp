@@ -123,6 +123,7 @@ void Chip::access(Payload& payload, unsigned i, sc_core::sc_time& delay) {
 unsigned Chip::transport_dbg(Payload& payload) {
     if (!payload.is_read() || payload.get_data_ptr() == nullptr) return 0;
     line->advance(to_ticks(sc_core::sc_time_stamp()));
+    line->touched();
     unsigned i = 0;
     for (; i < payload.get_data_length() && settings_.window.holds(payload.get_address() + i, 1); ++i) {
         const std::uint64_t address = payload.get_address() + i;
@@ -150,7 +151,7 @@ void Chip::line_moved() {
 
 void Chip::plan_outputs() {
     if (edges_.empty()) return;
-    const sc_core::sc_time now = sc_core::sc_time_stamp(), at = edges_.front().at;
+    const sc_core::sc_time &now = sc_core::sc_time_stamp(), &at = edges_.front().at;
     output_due_.notify(at > now ? at - now : sc_core::SC_ZERO_TIME);
 }
 

@@ -9,10 +9,6 @@
 // Not modelled here: strobes, XREADY and bits; see package.hpp.
 #pragma once
 
-#ifndef SC_INCLUDE_DYNAMIC_PROCESSES
-#define SC_INCLUDE_DYNAMIC_PROCESSES  // for the nb_transport of the socket
-#endif
-
 #include <cstdint>
 #include <deque>
 #include <memory>

@@ -56,6 +56,7 @@ void Line::end_of_elaboration() { plan(); }
 void Line::step() {
     planned_ = sc_core::sc_max_time();
     advance(to_ticks(sc_core::sc_time_stamp()));
+    collect();
     deliver();
     plan();
 }
@@ -67,7 +68,6 @@ void Line::advance(Ticks to) {
             report::error(report::kLine, *this, dpchip_last_error());
             break;
         }
-    collect();
 }
 
 void Line::touched() {
@@ -105,7 +105,7 @@ void Line::plan() {
     planned_ = at;
     wake_.cancel();
     if (at == sc_core::sc_max_time()) return;
-    const sc_core::sc_time now = sc_core::sc_time_stamp();
+    const sc_core::sc_time& now = sc_core::sc_time_stamp();
     wake_.notify(at > now ? at - now : sc_core::SC_ZERO_TIME);
 }
 

@@ -63,9 +63,9 @@ class LineChipIf : public virtual sc_core::sc_interface {
 public:
     /// Puts a chip on the line, at the end of elaboration. Both must outlive the simulation.
     virtual void attach(dpchip_chip& chip, LineStation& station) = 0;
-    /// Brings the line and all that is on it to `to`, if it is not there yet.
+    /// Brings the line and all that is on it to `to`, if it is not there yet; touched() must follow.
     virtual void advance(Ticks to) = 0;
-    /// A chip has been accessed: the line looks again at what it wants.
+    /// The line has been moved or a chip accessed: what came of it is handed on, and what comes next is planned.
     virtual void touched() = 0;
 };
 

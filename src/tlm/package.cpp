@@ -111,7 +111,8 @@ void Package::plan() {
     wake_.cancel();
     const Ticks next = dpchip_pins_next(part_.get());
     if (next == kNever || stopped_) return;
-    const sc_core::sc_time at = to_sc_time(next), now = sc_core::sc_time_stamp();
+    const sc_core::sc_time at = to_sc_time(next);
+    const sc_core::sc_time& now = sc_core::sc_time_stamp();
     wake_.notify(at > now ? at - now : sc_core::SC_ZERO_TIME);
 }
 

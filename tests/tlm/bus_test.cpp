@@ -16,9 +16,12 @@ constexpr auto kOk = ::tlm::TLM_OK_RESPONSE;
 constexpr auto kRead = ::tlm::TLM_READ_COMMAND;
 constexpr auto kWrite = ::tlm::TLM_WRITE_COMMAND;
 
-/// Runs `program` as the processor of a single chip.
-void with_chip(const ChipSettings& settings, const std::function<void(Board&)>& program) {
+/// Runs `program` as the processor of a single chip at this place.
+void with_chip(const BusWindow& window, const std::function<void(Board&)>& program, DataFormat format = DataFormat::intel) {
     simulate([&] {
+        ChipSettings settings;
+        settings.window = window;
+        settings.format = format;
         Board board{"board", settings};
         bool ended = false;
         board.program = [&] {
@@ -81,9 +84,7 @@ TEST(TlmBusWindow, mirrors_and_strides_follow_the_wiring) {
 }
 
 TEST(TlmBus, a_chip_sits_at_its_base_address) {
-    ChipSettings s;
-    s.window.base = 0x40000000;
-    with_chip(s, [](Board& b) {
+    with_chip({0x40000000, 0x1000, 0xFFF, 1}, [](Board& b) {
         b.write(0x40000100, 0x5A);
         EXPECT_EQ(b.chip.peek(0x100), 0x5A);
         std::uint8_t value = 0;
@@ -93,9 +94,7 @@ TEST(TlmBus, a_chip_sits_at_its_base_address) {
 }
 
 TEST(TlmBus, with_a_word_stride_every_second_octet_is_the_chip) {
-    ChipSettings s;
-    s.window = {0, 0x2000, 0x1FFF, 2};
-    with_chip(s, [](Board& b) {
+    with_chip({0, 0x2000, 0x1FFF, 2}, [](Board& b) {
         std::array<std::uint8_t, 4> words{0x11, 0xAA, 0x22, 0xBB};
         EXPECT_EQ(b.transport(kWrite, 0x200, words.data(), 4), kOk);
         EXPECT_EQ(sc_core::sc_time_stamp() + b.delay, ns(250)) << "two cycles of the chip";
@@ -107,15 +106,13 @@ TEST(TlmBus, with_a_word_stride_every_second_octet_is_the_chip) {
 }
 
 TEST(TlmBus, the_Motorola_format_swaps_the_octets_of_the_word_registers) {
-    ChipSettings s;
-    s.format = DataFormat::motorola;
-    with_chip(s, [](Board& b) {
+    with_chip({}, [](Board& b) {
         b.write(0x05, 0x0F);  // IntMask-Reg low octet
         EXPECT_EQ(dpchip_chip_set_bus_mode(b.chip.handle(), DPCHIP_INTEL), DPCHIP_OK);
         b.chip.changed();
         b.write(0x00, 0xF0);
         EXPECT_EQ(b.read(0x02), 0xF0) << "the requests 10H..80H pass the mask";
-    });
+    }, DataFormat::motorola);
 }
 
 // ---- the generic payload -----------------------------------------------------------------------------------------
@@ -260,7 +257,7 @@ TEST(TlmBus, a_debugger_reads_everything_and_changes_nothing) {
     with_chip({}, [](Board& b) {
         b.set_up();
         const auto before = b.memory();
-        const auto line = sc_core::sc_time_stamp();
+        const auto time = sc_core::sc_time_stamp().value();
         std::vector<std::uint8_t> view(0x1000, 0);
         ::tlm::tlm_generic_payload p;
         p.set_command(kRead);
@@ -270,7 +267,7 @@ TEST(TlmBus, a_debugger_reads_everything_and_changes_nothing) {
         EXPECT_EQ(b.cpu->transport_dbg(p), 0x1000u);
         EXPECT_EQ(std::vector<std::uint8_t>(view.begin(), view.begin() + 2048), before);
         EXPECT_EQ(b.memory(), before) << "Next_Dout_Buffer_Cmd at 0BH has not acted";
-        EXPECT_EQ(sc_core::sc_time_stamp(), line);
+        EXPECT_EQ(sc_core::sc_time_stamp().value(), time);
         p.set_address(0xFFE);
         EXPECT_EQ(b.cpu->transport_dbg(p), 2u) << "up to the end of the window";
         p.set_address(0x2000);

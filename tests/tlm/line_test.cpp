@@ -42,7 +42,7 @@ private:
 };
 
 /// The X/INT of the user's millisecond clock, acknowledged at 2.5 ms, with EOI 1 us later again because the event stays.
-const std::vector<Probe::Change> kUserClock{{ms(1), false}, {us(2500), true}, {us(2501), false}};
+std::vector<Probe::Change> user_clock() { return {{ms(1), false}, {us(2500), true}, {us(2501), false}}; }
 
 class TlmDecoupled : public testing::TestWithParam<Synchronisation> {};
 
@@ -60,11 +60,46 @@ TEST_P(TlmDecoupled, X_INT_is_shown_at_its_own_time_however_far_ahead_the_proces
             EXPECT_EQ(b.read(0x02), 0x10) << "and the processor sees it at its local time";
         };
         sc_core::sc_start(ms(4));
-        EXPECT_EQ(x_int.changes, kUserClock);
+        EXPECT_EQ(x_int.changes, user_clock());
     });
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, TlmDecoupled, testing::Values(Synchronisation::exact, Synchronisation::run_ahead));
+
+TEST(TlmLine, after_two_hundred_days_an_edge_is_still_exact_to_the_picosecond) {
+    simulate([] {
+        const sc_time start = ms(200ull * 24 * 3600 * 1000);
+        Line line{"line"};
+        Board b{"board", quick(), &line};
+        Probe x_int{"probe", b.x_int};
+        b.program = [&] {
+            until(start + sc_time::from_value(1));  // between two ticks: it counts as the earlier one
+            b.set_up(0xEF);
+        };
+        sc_core::sc_start(start + us(2500));
+        EXPECT_EQ(x_int.changes, (std::vector<Probe::Change>{{start + ms(1), false}}));
+    });
+}
+
+TEST(TlmLine, a_coarser_resolution_is_warned_of_and_shows_edges_late_by_less_than_its_unit) {
+    simulate([] {
+        sc_core::sc_set_time_resolution(1, sc_core::SC_US);
+        const Reports reports{"/dpchip/line"};
+        Line line{"line"};
+        Board b{"board", quick(), &line};
+        Probe x_int{"probe", b.x_int};
+        b.program = [&] {
+            sc_core::wait(1, sc_core::SC_MS);
+            b.set_up(0xEF);
+            b.write(0x08, 0x02);
+            sc_core::wait(1500, sc_core::SC_US);
+            b.write(0x08, 0x02);  // X/INT is inactive for 1 us
+        };
+        sc_core::sc_start(3, sc_core::SC_MS);
+        EXPECT_NE(reports.text().find("resolution"), std::string::npos);
+        EXPECT_EQ(x_int.changes, (std::vector<Probe::Change>{{{2, sc_core::SC_MS}, false}, {{2500, sc_core::SC_US}, true}, {{2501, sc_core::SC_US}, false}}));
+    });
+}
 
 TEST(TlmLine, X_INT_of_a_telegram_comes_one_CLK_after_its_last_stop_bit) {
     simulate([] {
@@ -216,6 +251,90 @@ TEST(TlmLine, a_master_that_speaks_into_an_answer_collides) {
         EXPECT_FALSE(monitor.seen[1].damaged);
         EXPECT_TRUE(monitor.seen[2].damaged);
         EXPECT_TRUE(monitor.seen[3].damaged);
+    });
+}
+
+/// Two stations whose processors poll on a line of their own, each ahead of the kernel by up to its quantum.
+struct Pair {
+    struct Sample {
+        sc_time at;
+        std::uint8_t status, requests;
+        friend bool operator==(const Sample& a, const Sample& b) { return a.at == b.at && a.status == b.status && a.requests == b.requests; }
+    };
+    Pair(const std::string& name, const sc_time& quantum_8, const sc_time& quantum_9)
+        : line{(name + "_line").c_str()}, b8{(name + "_8").c_str(), quick(), &line}, b9{(name + "_9").c_str(), quick(), &line},
+          master{(name + "_master").c_str(), [this] { speak(); }} {
+        b8.program = [this, quantum_8] { poll(b8, 8, us(7), quantum_8, seen_8); };
+        b9.program = [this, quantum_9] { poll(b9, 9, us(11), quantum_9, seen_9); };
+    }
+    static void poll(Board& b, std::uint8_t station, const sc_time& period, const sc_time& quantum, std::vector<Sample>& seen) {
+        b.set_up(0xFF, 0xFF, station);
+        for (;;) {
+            b.delay += period;
+            if (b.delay >= quantum) {
+                sc_core::wait(b.delay);
+                b.delay = sc_core::SC_ZERO_TIME;
+            }
+            const sc_time at = sc_core::sc_time_stamp() + b.delay;
+            const std::uint8_t status = b.read(0x04), requests = b.read(0x01);
+            seen.push_back({at, status, requests});
+        }
+    }
+    void speak() {
+        const Octets set_prm{0x68, 0x0D, 0x0D, 0x68, 0x88, 0x82, 0x6D, 0x3D, 0x3E, 0x80, 0x01, 0x01, 0x0B, 0x47, 0x11, 0x00, 0x00, 0xD7, 0x16};
+        Octets to_9 = set_prm;
+        to_9[4] = 0x89;
+        to_9[17] = 0xD8;
+        Telegram answer;
+        until(us(3500));
+        EXPECT_FALSE(line.exchange(kFdlStatus, answer, us(200)));
+        for (const Octets& request : {set_prm, to_9, set_prm}) {
+            EXPECT_TRUE(line.exchange(request, answer, us(200)));
+            sc_core::wait(us(33));
+        }
+    }
+
+    Line line;
+    Board b8, b9;
+    Actor master;
+    std::vector<Sample> seen_8, seen_9;
+};
+
+TEST(TlmLine, processors_that_are_ahead_by_different_quanta_see_their_chips_as_if_they_were_not) {
+    simulate([] {
+        Pair plain{"plain", sc_core::SC_ZERO_TIME, sc_core::SC_ZERO_TIME}, decoupled{"decoupled", ms(1), us(123)};
+        sc_core::sc_start(us(5500));
+        ASSERT_GT(plain.seen_8.size(), 700u);
+        const auto prefix = [](const std::vector<Pair::Sample>& a, const std::vector<Pair::Sample>& b) {
+            return std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(std::min(a.size(), b.size())), b.begin());
+        };
+        EXPECT_TRUE(prefix(plain.seen_8, decoupled.seen_8));
+        EXPECT_TRUE(prefix(plain.seen_9, decoupled.seen_9));
+        EXPECT_EQ(plain.b8.memory(), decoupled.b8.memory());
+        EXPECT_EQ(plain.b9.memory(), decoupled.b9.memory());
+        EXPECT_NE(plain.seen_9.front().requests, plain.seen_9.back().requests) << "something has happened meanwhile";
+    });
+}
+
+TEST(TlmLine, a_snapshot_brings_registers_and_outputs_back) {
+    simulate([] {
+        Board b{"board", quick()};
+        Probe x_int{"probe", b.x_int};
+        b.program = [&] {
+            Octets snapshot(dpchip_chip_snapshot_size(b.chip.handle()));
+            b.set_up(0xEF);
+            until(us(1200));
+            const auto before = b.memory();
+            EXPECT_GT(dpchip_chip_save(b.chip.handle(), snapshot.data(), snapshot.size()), 0);
+            EXPECT_EQ(dpchip_chip_reset(b.chip.handle()), DPCHIP_OK);
+            b.chip.changed();
+            until(us(1500));
+            EXPECT_EQ(dpchip_chip_load(b.chip.handle(), snapshot.data(), snapshot.size()), DPCHIP_OK) << dpchip_last_error();
+            b.chip.changed();
+            EXPECT_EQ(b.memory(), before);
+        };
+        sc_core::sc_start(us(1900));
+        EXPECT_EQ(x_int.changes, (std::vector<Probe::Change>{{ms(1), false}, {us(1200), true}, {us(1500), false}}));
     });
 }
 
