@@ -37,6 +37,7 @@ SlaveEntry entry_of(const AcyclicArguments& a) {
         for (const SlaveEntry& s : line_config(a.line, {}).slaves)
             if (s.address == a.address) entry = s;
     entry.address = a.address;
+    entry.alarms = 0;  // nobody would acknowledge them but `alarms`, which says which it wants
     if (entry.gsd.empty() && !a.modules.empty()) throw Failure{ExitCode::usage, "--module needs --gsd"};
     return entry;
 }

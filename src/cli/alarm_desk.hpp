@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <dpchip/cli/application.hpp>
 #include <dpchip/cli/stations.hpp>
 #include <dpchip/master/alarm_receiver.hpp>
 #include <dpchip/master/master.hpp>
@@ -56,6 +57,16 @@ private:
     master::Master* master_;
     trace::GsdTexts texts_;
     std::vector<std::unique_ptr<Desk>> desks_;
+};
+
+/// A master's cycle hook: what its application does, and alarms.
+struct CycleHook {
+    Application* application = nullptr;
+    AlarmDesk* alarms = nullptr;
+    void operator()(master::Master& m) {
+        (*application)(m);
+        alarms->look();
+    }
 };
 
 /// Texts of the GSD for the bits of an alarm or status message.

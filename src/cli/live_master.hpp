@@ -33,6 +33,7 @@ public:
     master::Master& master() { return *master_; }
     const LineConfig& config() const { return config_; }
     const trace::GsdTexts& texts() const { return texts_; }
+    GsdShelf& shelf() { return shelf_; }
     const gsd::Gsd& gsd(std::size_t n) { return shelf_.get(config_.slaves[n].gsd); }
     /// Lives until `done` or the time is over; false when it was not done. Ends early when a signal stopped the line.
     template <class F>

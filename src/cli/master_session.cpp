@@ -31,9 +31,10 @@ std::vector<Application::Wish> wishes(const LineConfig& config, const SessionOpt
 
 MasterSession::MasterSession(const LineConfig& config, const SessionOptions& options)
     : options_{options}, live_{std::make_unique<LiveMaster>(config, LiveMaster::Options{})}, application_{wishes(config, options)},
+      alarm_desk_{live_->master(), live_->config().slaves, live_->shelf()},
       said_(config.slaves.size()), lost_before_(config.slaves.size()) {
     if (config.slaves.empty()) throw Failure{ExitCode::usage, "no slave to drive: give --gsd FILE --address N, or a LINE.toml with [[slave]]"};
-    live_->master().on_cycle(application_);
+    live_->master().on_cycle(hook_);
 }
 
 ExitCode MasterSession::run() {
@@ -94,6 +95,10 @@ void MasterSession::leave() {
 
 void MasterSession::tell_changes() {
     const master::Master& m = live_->master();
+    for (const AlarmDesk::Line& line : alarm_desk_.take(live_->line().now())) {
+        spdlog::info("master: slave {} {}: {}", m.slave(line.slave).config().address, m.slave(line.slave).config().name, line.text);
+        for (const std::string& detail : line.details) spdlog::info("  {}", detail);
+    }
     for (std::size_t n = 0; n < m.size(); ++n) {
         std::string now = master::name(m.slave(n).state());
         if (m.slave(n).fault() != master::SlaveFault::none) now += fmt::format(" ({})", master::name(m.slave(n).fault()));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <dpchip/cli/alarm_desk.hpp>
 #include <dpchip/cli/application.hpp>
 #include <dpchip/cli/failure.hpp>
 #include <dpchip/cli/live_master.hpp>
@@ -42,6 +43,8 @@ private:
     SessionOptions options_;
     std::unique_ptr<LiveMaster> live_;
     Application application_;
+    AlarmDesk alarm_desk_;
+    CycleHook hook_{&application_, &alarm_desk_};
     LiveView view_;
     std::vector<std::string> said_;
     std::vector<std::uint64_t> lost_before_;

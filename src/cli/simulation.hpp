@@ -93,14 +93,7 @@ private:
     segment::StationIndex master_index_{};
     std::unique_ptr<Application> application_;
     std::unique_ptr<AlarmDesk> alarm_desk_;
-    struct CycleHook {
-        Application* application;
-        AlarmDesk* alarms;
-        void operator()(master::Master& m) {
-            (*application)(m);
-            alarms->look();
-        }
-    } hook_{};
+    CycleHook hook_;
     std::vector<AlarmDesk::Line> alarms_;
     std::uint64_t unheard_ = 0;
     std::uint64_t faults_ = 0;

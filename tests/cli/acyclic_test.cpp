@@ -229,6 +229,25 @@ TEST(Serve, does_the_events_of_its_slaves_and_leaves_the_masters_out) {
     EXPECT_EQ(server.wait(), 0);
 }
 
+TEST_F(Station, is_driven_by_master_run_which_acknowledges_its_alarms) {
+    std::string slave = toml();
+    slave.insert(slave.find("name ="), "alarms = \"all\"\nalarm_sequence = 2\n");
+    Program driving{{"master", "run", folder.file("master.toml", slave), "--line", path}};
+    ASSERT_TRUE(driving.said("data exchange")) << driving.err();
+    // Before the first Data_Exchange nobody hears anything: status messages tell when it has come.
+    for (int slot = 0; slot < 255 && server->err().find(" raised") == std::string::npos; ++slot) {
+        command("status slave=5 type=32 slot=" + std::to_string(slot));
+        ASSERT_TRUE(server->said("slot " + std::to_string(slot))) << server->err();
+    }
+    for (int n = 0; n < 5; ++n) {
+        command("alarm slave=5 type=process slot=" + std::to_string(n));
+        ASSERT_TRUE(driving.said("Process_Alarm slot " + std::to_string(n) + " Seq_Nr " + std::to_string(n))) << driving.err();
+        ASSERT_TRUE(server->said("Process_Alarm slot " + std::to_string(n) + " Seq_Nr " + std::to_string(n) + " acknowledged")) << server->err();
+    }
+    driving.signal(SIGINT);
+    EXPECT_EQ(driving.wait(), 0) << driving.err();
+}
+
 TEST(Serve, gives_a_newcomer_a_record_on_the_command_line) {
     Program server{{"serve", "--gsd", kGsd, "--module", kModule, "--address", "7", "--record", "1:4=01020304", "--baud", "12M", "--line", "pty"}};
     const std::string path = server.line().substr(10);
@@ -273,6 +292,21 @@ TEST(SimAlarms, are_received_acknowledged_and_told_in_words) {
                               "Diagnostic_Alarm slot 1 Seq_Nr 2 disappears", "Status_Message", "3 alarms received, 3 acknowledged; 1 status messages; 0 that"})
         EXPECT_NE(r.out.find(words), std::string::npos) << words << '\n' << r.out;
     EXPECT_NE(r.err.find("Seq_Nr 2 acknowledged"), std::string::npos) << r.err;
+}
+
+TEST(SimAlarms, of_the_shipped_scenario_are_all_acknowledged) {
+    const Result r = run({"sim", DPCHIP_SOURCE_DIR "/examples/dpv1.toml", "--json", "-q"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json j = Json::parse(r.out);
+    EXPECT_TRUE(j["ok"]);
+    EXPECT_EQ(j["alarms_acknowledged"], 4);
+    std::vector<std::string> alarms;
+    for (const Json& a : j["alarms"])
+        if (a["kind"] == "alarm") alarms.push_back(a["text"]);
+    EXPECT_EQ(alarms, (std::vector<std::string>{"Diagnostic_Alarm slot 1 Seq_Nr 0 appears: 01 00", "Diagnostic_Alarm slot 1 Seq_Nr 1 disappears",
+                                                "Pull_Alarm slot 2 Seq_Nr 2 appears", "Plug_Alarm slot 2 Seq_Nr 3 disappears"}));
+    EXPECT_TRUE(j["alarms"].back()["text"].get<std::string>().starts_with("Status_Message")) << j["alarms"];
+    EXPECT_EQ(j["slaves"][0]["lost"], 0);
 }
 
 TEST(SimAlarms, wait_for_each_other_in_type_mode_and_not_in_sequence_mode) {

@@ -51,7 +51,7 @@ struct Ms2Test : ::testing::Test {
     }
     static constexpr std::uint8_t kInitiate[]{0x57, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 0, 0, 0};
     /// Opens a connection by hand; its SAP.
-    std::uint8_t initiate_by_hand(Octets request = Octets(std::begin(kInitiate), std::end(kInitiate))) {
+    std::uint8_t initiate_by_hand(const Octets& request = Octets(std::begin(kInitiate), std::end(kInitiate))) {
         const Job rm = ask(request, dp::kSapResourceManager);
         EXPECT_EQ(rm.outcome, Job::Outcome::data);
         const auto decoded = dp::decode_resource_manager(rm.data());
