@@ -20,10 +20,6 @@ Telegram telegram_from(const dpchip_telegram& t) {
 
 }  // namespace
 
-bool operator==(const Telegram& a, const Telegram& b) {
-    return a.octets == b.octets && a.start == b.start && a.end == b.end && a.own == b.own && a.damaged == b.damaged;
-}
-
 std::ostream& operator<<(std::ostream& out, const Telegram& telegram) {
     const char* gap = "";
     for (const std::uint8_t octet : telegram.octets) {

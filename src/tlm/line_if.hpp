@@ -24,7 +24,6 @@ struct Telegram {
     bool damaged = false;    ///< a collision, or no telegram at all
 };
 
-bool operator==(const Telegram& a, const Telegram& b);
 /// Hexadecimal octets, as in "10 08 02 49 53 16".
 std::ostream& operator<<(std::ostream& out, const Telegram& telegram);
 

@@ -282,7 +282,7 @@ TEST(TlmBus, a_debugger_reads_everything_and_changes_nothing) {
 
 TEST(TlmBus, findings_are_warnings_of_their_own_type) {
     with_chip({}, [](Board& b) {
-        const Reports findings{"/dpchip/finding"};
+        const Reports findings{report::kFinding};
         b.set_up();
         b.write(0x06, 0x00);  // Mode Register 0 while online
         EXPECT_NE(findings.text().find("mode_reg_online"), std::string::npos) << findings.text();

@@ -3,6 +3,8 @@
 // processor that is ahead of the kernel.
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "tlm/simulation.hpp"
 
 namespace dpchip::tlm::test {
@@ -84,7 +86,7 @@ TEST(TlmLine, after_two_hundred_days_an_edge_is_still_exact_to_the_picosecond) {
 TEST(TlmLine, a_coarser_resolution_is_warned_of_and_shows_edges_late_by_less_than_its_unit) {
     simulate([] {
         sc_core::sc_set_time_resolution(1, sc_core::SC_US);
-        const Reports reports{"/dpchip/line"};
+        const Reports reports{report::kLine};
         Line line{"line"};
         Board b{"board", quick(), &line};
         Probe x_int{"probe", b.x_int};
@@ -221,6 +223,9 @@ TEST(TlmLine, two_chips_and_a_master_share_a_line) {
         }};
         sc_core::sc_start(ms(6));
         ASSERT_EQ(monitor.seen.size(), 5u);
+        std::ostringstream text;
+        text << monitor.seen[4];
+        EXPECT_EQ(text.str(), "10 02 08 00 0A 16");
         for (const Telegram& t : monitor.seen) EXPECT_FALSE(t.damaged);
         const Telegram& request = monitor.seen[1];
         const Telegram& answer = monitor.seen[2];
@@ -335,6 +340,29 @@ TEST(TlmLine, a_snapshot_brings_registers_and_outputs_back) {
         };
         sc_core::sc_start(us(1900));
         EXPECT_EQ(x_int.changes, (std::vector<Probe::Change>{{ms(1), false}, {us(1200), true}, {us(1500), false}}));
+    });
+}
+
+TEST(TlmLine, what_cannot_be_sent_and_rates_that_do_not_exist_are_errors) {
+    simulate([] {
+        const auto error_of = [](const std::function<void()>& mistake) {
+            try {
+                mistake();
+            } catch (const sc_core::sc_report& report) {
+                return std::string{report.get_msg()};
+            }
+            return std::string{};
+        };
+        EXPECT_NE(error_of([] { const Line wrong{"wrong", 1234}; }).find("1234"), std::string::npos);
+        Line line{"line"};
+        Actor master{"master", [&] {
+            EXPECT_NE(error_of([&] { static_cast<void>(line.send({})); }), "");
+            EXPECT_NE(error_of([&] { static_cast<void>(line.send_now(Octets(256, 0))); }), "");
+            EXPECT_TRUE(line.send(kFdlStatus)) << "waits until the line has been idle for TID1";
+            Telegram answer;
+            EXPECT_NE(error_of([&] { static_cast<void>(line.exchange(kFdlStatus, answer, us(1))); }), "");
+        }};
+        sc_core::sc_start(us(10));
     });
 }
 

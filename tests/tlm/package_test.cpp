@@ -15,7 +15,6 @@ namespace startup = dpchip::test::startup;
 namespace {
 
 constexpr Ticks kBit = 40'000;  // 1.5 Mbit/s
-constexpr const char* kFinding = "/dpchip/finding";
 
 TEST(TlmPackage, there_are_44_pins_with_the_names_of_the_drawing_and_none_has_to_be_bound) {
     simulate([] {
@@ -81,7 +80,7 @@ TEST(TlmPackage, data_are_valid_after_the_access_time_and_held_after_the_strobe)
 
 TEST(TlmPackage, a_strobe_that_is_too_short_is_a_finding_that_names_the_parameter) {
     simulate([] {
-        const Reports findings{kFinding};
+        const Reports findings{report::kFinding};
         PinBoard b{"board"};
         b.program = [&] {
             b.power_up();
@@ -100,7 +99,7 @@ TEST(TlmPackage, a_strobe_that_is_too_short_is_a_finding_that_names_the_paramete
 
 TEST(TlmPackage, who_drives_the_bus_during_a_read_collides_with_the_part) {
     simulate([] {
-        const Reports findings{kFinding};
+        const Reports findings{report::kFinding};
         PinBoard b{"board"};
         b.program = [&] {
             b.power_up();
@@ -171,7 +170,7 @@ TEST(TlmPackage, a_driven_clock_sets_the_phase) {
 
 TEST(TlmPackage, a_supply_pin_at_the_wrong_level_is_reported) {
     simulate([] {
-        const Reports reports{"/dpchip/package"};
+        const Reports reports{report::kPackage};
         Package package{"package"};
         PinBoard::Wire vdd{"vdd", sc_dt::SC_LOGIC_0};
         package.vdd[1](vdd);
@@ -207,8 +206,8 @@ TEST(TlmPackage, parts_that_do_not_exist_are_errors_of_elaboration) {
 
 TEST(TlmPackage, a_fatal_violation_stops_the_part_and_is_one_error) {
     simulate([] {
-        sc_core::sc_report_handler::set_actions(kFinding, sc_core::SC_DO_NOTHING);
-        const Reports reports{"/dpchip/package"};
+        sc_core::sc_report_handler::set_actions(report::kFinding, sc_core::SC_DO_NOTHING);
+        const Reports reports{report::kPackage};
         PackageSettings s;
         s.options = {{"fatal", "true"}};
         PinBoard b{"board", s};

@@ -16,6 +16,7 @@
 
 #include <dpchip/tlm/chip.hpp>
 #include <dpchip/tlm/line.hpp>
+#include <dpchip/tlm/report.hpp>
 
 namespace dpchip::tlm::test {
 
