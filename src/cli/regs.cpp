@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <dpchip/cli/commands.hpp>
+#include <dpchip/cli/electrical.hpp>
 #include <dpchip/cli/settings.hpp>
 #include <dpchip/regmap/address.hpp>
 #include <dpchip/regmap/control_parameters.hpp>
@@ -149,11 +150,18 @@ Json to_json(Variant v) {
 
 struct Arguments {
     std::string chip = "vpc3+c", format = "text";
+    bool electrical = false;
 };
+
+void print_electrical(Variant v, std::string_view format) {
+    const std::string text = format == "json" ? electrical_json(v) : format == "markdown" ? electrical_markdown(v) : electrical_text(v);
+    std::fputs(text.c_str(), stdout);
+}
 
 ExitCode run(const Arguments& a) {
     const Variant v = parse_chip(a.chip, {});
-    if (a.format == "json") std::printf("%s\n", to_json(v).dump(2).c_str());
+    if (a.electrical) print_electrical(v, a.format);
+    else if (a.format == "json") std::printf("%s\n", to_json(v).dump(2).c_str());
     else if (a.format == "markdown") print_markdown(v);
     else print_text(v);
     return ExitCode::ok;
@@ -166,7 +174,8 @@ void add_regs(CLI::App& app, Job& job) {
     const auto a = std::make_shared<Arguments>();
     c->add_option("--chip", a->chip, "vpc3+c (default), vpc3+b, vpc3+, apc3, spc3")->type_name("CHIP");
     c->add_option("--format", a->format, "text (default), json, markdown")->check(CLI::IsMember({"text", "json", "markdown"}));
-    c->footer(footer("  dpchip regs --chip apc3 --format markdown > apc3.md"));
+    c->add_flag("--electrical", a->electrical, "pins, ratings, levels, bus timing and dimensions instead of registers");
+    c->footer(footer("  dpchip regs --chip apc3 --format markdown > apc3.md\n  dpchip regs --electrical"));
     c->callback([a, &job] { job = [a] { return run(*a); }; });
 }
 

@@ -35,12 +35,12 @@ TEST(UartReceiver, every_phase_of_an_edge_against_CLK_at_12_Mbit_s_costs_less_th
     for (std::int64_t phase = 0; phase < core::kClk.n; ++phase) {
         Rig rig{fdl::BaudCode::mbit_12};
         const Ticks start = on_grid(rig, kBegin) + Ticks{phase};
-        for (unsigned n = 0; n < 8; ++n) rig.character(start + rig.bit * (11 * n), static_cast<std::uint8_t>(0x1D << n | n));
+        for (unsigned n = 0; n < 8; ++n) rig.character(start + rig.bit * (11 * n), static_cast<std::uint8_t>(0x1Du << n | n));
         rig.finish(start + rig.bit * 100);
         ASSERT_EQ(rig.host.characters.size(), 8u) << phase;
         for (unsigned n = 0; n < 8; ++n) {
             const fdl::Character& c = rig.host.characters[n];
-            ASSERT_EQ(c.octet, static_cast<std::uint8_t>(0x1D << n | n)) << phase;
+            ASSERT_EQ(c.octet, static_cast<std::uint8_t>(0x1Du << n | n)) << phase;
             ASSERT_EQ(c.faults, 0) << phase;
             ASSERT_EQ(c.start - (start + rig.bit * (11 * n)), phase == 0 ? Ticks{} : core::kClk - Ticks{phase});
         }
