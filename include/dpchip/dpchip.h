@@ -192,6 +192,24 @@ DPCHIP_API int dpchip_line_telegram(dpchip_line *line, dpchip_telegram *telegram
 /* Records all telegrams from now on into a pcapng file that Wireshark opens; NULL ends the recording. */
 DPCHIP_API int dpchip_line_record(dpchip_line *line, const char *path);
 
+/* ---- a line of your own ----------------------------------------------------------------------------------------- */
+
+/* A chip that is on no line may be on one that the caller models, a telegram at a time. All of this happens at the chip's
+   present: move it with dpchip_chip_run_ticks, not past dpchip_chip_next_ticks, and call dpchip_chip_take there. On a line
+   of this library all of it is DPCHIP_E_STATE. */
+
+/* What is wrong with a character; sums of these. */
+enum { DPCHIP_FAULT_PARITY = 1, DPCHIP_FAULT_STOP = 2, DPCHIP_FAULT_COLLISION = 4 };
+
+/* Somebody else begins to send: an answer that is planned is given up. */
+DPCHIP_API int dpchip_chip_carrier(dpchip_chip *chip);
+/* Exactly one good telegram at `baud` bit/s has ended. */
+DPCHIP_API int dpchip_chip_hear(dpchip_chip *chip, const void *telegram, size_t n, uint32_t baud);
+/* One character has ended. What is no good telegram comes this way, each of its characters. */
+DPCHIP_API int dpchip_chip_hear_character(dpchip_chip *chip, uint8_t octet, int faults, uint32_t baud);
+/* 1: the chip begins to send, and what is in `telegram`; 0: it does not. */
+DPCHIP_API int dpchip_chip_take(dpchip_chip *chip, dpchip_telegram *telegram);
+
 #ifdef __cplusplus
 }
 #endif
