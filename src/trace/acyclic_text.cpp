@@ -47,7 +47,7 @@ void im0_details(Octets record, std::vector<std::string>& details) {
     details.push_back("IM_VERSION " + std::to_string(r->im_version >> 8) + '.' + std::to_string(r->im_version & 0xFF));
     std::string supported;
     for (unsigned n = 1; n < 16; ++n)
-        if ((r->im_supported >> n & 1u) != 0) add_word(supported, "I&M" + std::to_string(n), " ");
+        if (core::bit(r->im_supported, n)) add_word(supported, "I&M" + std::to_string(n), " ");
     details.push_back("IM_SUPPORTED " + hex_number(r->im_supported, 4) + (supported.empty() ? "" : ": " + supported));
 }
 
