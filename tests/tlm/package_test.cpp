@@ -33,9 +33,11 @@ TEST(TlmPackage, there_are_44_pins_with_the_names_of_the_drawing_and_none_has_to
     });
 }
 
-TEST(TlmPackage, a_bus_cycle_writes_and_reads_and_leaves_the_bus_alone) {
+class TlmBusMode : public testing::TestWithParam<Bus> {};
+
+TEST_P(TlmBusMode, a_bus_cycle_writes_and_reads_and_leaves_the_bus_alone) {
     simulate([] {
-        PinBoard b{"board"};
+        PinBoard b{"board", {}, GetParam()};
         bool ended = false;
         b.program = [&] {
             b.power_up();
@@ -45,16 +47,20 @@ TEST(TlmPackage, a_bus_cycle_writes_and_reads_and_leaves_the_bus_alone) {
             EXPECT_EQ(b.read(0x100), 0x5A);
             EXPECT_EQ(b.data(), "ZZZZZZZZ");
             EXPECT_EQ(b.read(0x101), 0xA5);
-            EXPECT_EQ(b.read(0x05), 0xCF) << "Status Register: VPC3+C, no baud rate";
+            const bool motorola = GetParam() != Bus::async_intel;
+            EXPECT_EQ(b.read(motorola ? 0x04 : 0x05), 0xCF) << "Status Register: VPC3+C, no baud rate";
             ended = true;
         };
         Scope ready{"ready", b.xready};
         sc_core::sc_start(us(20));
         EXPECT_TRUE(ended);
         EXPECT_EQ(b.package.violations(), 0);
-        EXPECT_EQ(ready.edges.size(), 11u) << "high at first, then XREADY falls and rises in each of five cycles";
+        const std::size_t edges = GetParam() == Bus::sync_motorola ? 1 : 11;
+        EXPECT_EQ(ready.edges.size(), edges) << "high at first, then XREADY or XDTACK falls and rises in each of five cycles";
     });
 }
+
+INSTANTIATE_TEST_SUITE_P(Buses, TlmBusMode, testing::Values(Bus::async_intel, Bus::async_motorola, Bus::sync_motorola));
 
 TEST(TlmPackage, data_are_valid_after_the_access_time_and_held_after_the_strobe) {
     simulate([] {

@@ -11,14 +11,19 @@ constexpr Ticks kBitsOfCharacter = 11;
 
 }  // namespace
 
-PinBoard::PinBoard(const sc_core::sc_module_name& name, const PackageSettings& settings)
-    : sc_core::sc_module{name}, package{"package", settings} {
+PinBoard::PinBoard(const sc_core::sc_module_name& name, const PackageSettings& settings, Bus bus)
+    : sc_core::sc_module{name}, xwr{"xwr", logic(bus == Bus::async_intel)}, as{"as", logic(bus == Bus::async_motorola)},
+      xint_mot{"xint_mot", logic(bus != Bus::async_intel)}, mode{"mode", logic(bus == Bus::sync_motorola)},
+      package{"package", settings}, bus_{bus} {
     using SC_CURRENT_USER_MODULE = PinBoard;
     package.ab.bind(ab);
     package.db.bind(db);
     package.xcs_ab11(xcs);
     package.xrd_r_w(xrd);
     package.xwr_e_clock_ab11(xwr);
+    package.ale_as_ab11(as);
+    package.xint_mot(xint_mot);
+    package.mode(mode);
     package.reset(reset);
     package.xready_xdtack(xready);
     package.x_int(x_int);
@@ -43,40 +48,49 @@ void PinBoard::power_up() {
     sc_core::wait(us(1));
 }
 
-void PinBoard::address(std::uint16_t a) {
-    for (unsigned i = 0; i < ab.size(); ++i) ab[i].write(logic((a >> i & 1) != 0));
-    xcs.write(sc_dt::SC_LOGIC_0);
-}
-
 void PinBoard::drive_data(const sc_logic& level, std::uint8_t value) {
     for (unsigned i = 0; i < db.size(); ++i) db[i].write(level == sc_dt::SC_LOGIC_Z ? level : logic((value >> i & 1) != 0));
 }
 
-std::uint8_t PinBoard::read(std::uint16_t a) {
-    address(a);  // with XRD in one delta cycle: set-up times of 0
-    xrd.write(sc_dt::SC_LOGIC_0);
+void PinBoard::begin(std::uint16_t address, bool write, std::uint8_t value) {
+    for (unsigned i = 0; i < ab.size(); ++i) ab[i].write(logic((address >> i & 1) != 0));
+    if (bus_ != Bus::async_intel) {
+        xrd.write(logic(!write));  // R_W
+        if (bus_ == Bus::async_motorola) xcs.write(sc_dt::SC_LOGIC_0);
+        sc_core::wait(ns(10));
+    }
+    xcs.write(sc_dt::SC_LOGIC_0);
+    if (write) drive_data(sc_dt::SC_LOGIC_1, value);
+    if (bus_ == Bus::async_intel) (write ? xwr : xrd).write(sc_dt::SC_LOGIC_0);
+    if (bus_ == Bus::async_motorola) as.write(sc_dt::SC_LOGIC_0);
+    if (bus_ == Bus::sync_motorola) xwr.write(sc_dt::SC_LOGIC_1);  // E_CLOCK
     sc_core::wait(ns(140));
+}
+
+void PinBoard::end() {
+    xcs.write(sc_dt::SC_LOGIC_1);
+    xwr.write(logic(bus_ == Bus::async_intel));
+    if (bus_ == Bus::async_intel) xrd.write(sc_dt::SC_LOGIC_1);
+    if (bus_ == Bus::async_motorola) as.write(sc_dt::SC_LOGIC_1);
+    sc_core::wait(ns(20));
+    drive_data(sc_dt::SC_LOGIC_Z);
+    sc_core::wait(ns(14));
+}
+
+std::uint8_t PinBoard::read(std::uint16_t address) {
+    begin(address, false);
     unsigned value = 0;
     for (unsigned i = 0; i < db.size(); ++i) {
         EXPECT_TRUE(db[i].read().is_01()) << "DB" << i << " after the access time";
         value |= db[i].read() == sc_dt::SC_LOGIC_1 ? 1u << i : 0u;
     }
-    xrd.write(sc_dt::SC_LOGIC_1);
-    xcs.write(sc_dt::SC_LOGIC_1);
-    sc_core::wait(ns(34));
+    end();
     return static_cast<std::uint8_t>(value);
 }
 
-void PinBoard::write(std::uint16_t a, std::uint8_t value) {
-    address(a);
-    xwr.write(sc_dt::SC_LOGIC_0);
-    drive_data(sc_dt::SC_LOGIC_1, value);
-    sc_core::wait(ns(140));
-    xwr.write(sc_dt::SC_LOGIC_1);
-    xcs.write(sc_dt::SC_LOGIC_1);
-    sc_core::wait(ns(20));
-    drive_data(sc_dt::SC_LOGIC_Z);
-    sc_core::wait(ns(14));
+void PinBoard::write(std::uint16_t address, std::uint8_t value) {
+    begin(address, true, value);
+    end();
 }
 
 std::string PinBoard::data() const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A board around the package for tests: its wires, a processor that makes asynchronous Intel cycles, and a UART that plays
-// the master bit by bit.
+// A board around the package for tests: its wires, a processor with one of three buses, and a UART that plays the master
+// bit by bit.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,18 @@ namespace dpchip::tlm::test {
 
 using sc_dt::sc_logic;
 
+enum class Bus { async_intel, async_motorola, sync_motorola };
+
 struct PinBoard : sc_core::sc_module {
     using Wire = sc_core::sc_signal<sc_logic>;
 
-    explicit PinBoard(const sc_core::sc_module_name& name, const PackageSettings& settings = {});
+    explicit PinBoard(const sc_core::sc_module_name& name, const PackageSettings& settings = {}, Bus bus = Bus::async_intel);
     ~PinBoard() override;
 
     /// RESET for 200 ns.
     void power_up();
-    /// Cycles with every set-up and hold time to spare; the strobe lasts until XREADY is there, 140 ns.
+    /// One cycle each; the strobe lasts 140 ns, until XREADY is there. Where a set-up or hold time may be 0, both signals
+    /// change in one delta cycle.
     std::uint8_t read(std::uint16_t address);
     void write(std::uint16_t address, std::uint8_t value);
     /// What is on DB; X where drivers disagree, Z where nobody drives.
@@ -32,7 +35,8 @@ struct PinBoard : sc_core::sc_module {
 
     sc_core::sc_vector<Wire> ab{"ab", 11};
     sc_core::sc_vector<sc_core::sc_signal_resolved> db{"db", 8};
-    Wire xcs{"xcs", sc_dt::SC_LOGIC_1}, xrd{"xrd", sc_dt::SC_LOGIC_1}, xwr{"xwr", sc_dt::SC_LOGIC_1}, reset{"reset", sc_dt::SC_LOGIC_0};
+    Wire xcs{"xcs", sc_dt::SC_LOGIC_1}, xrd{"xrd", sc_dt::SC_LOGIC_1}, xwr, as, reset{"reset", sc_dt::SC_LOGIC_0};
+    Wire xint_mot, mode;
     Wire xready{"xready"}, x_int{"x_int", sc_dt::SC_LOGIC_1}, xdataexch{"xdataexch", sc_dt::SC_LOGIC_1};
     Wire rxd{"rxd", sc_dt::SC_LOGIC_1}, txd{"txd", sc_dt::SC_LOGIC_1}, rts{"rts", sc_dt::SC_LOGIC_0};
     Package package;
@@ -40,7 +44,10 @@ struct PinBoard : sc_core::sc_module {
 
 private:
     void run();
-    void address(std::uint16_t a);
+    void begin(std::uint16_t address, bool write, std::uint8_t value = 0);
+    void end();
+
+    Bus bus_;
 };
 
 /// Edges of a wire, for UARTs and for times.
