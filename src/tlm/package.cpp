@@ -2,7 +2,6 @@
 // The package: ports against pins, and when the kernel has to come back.
 #include <dpchip/tlm/package.hpp>
 
-#include <algorithm>
 #include <array>
 
 #include <dpchip/tlm/report.hpp>
@@ -118,36 +117,19 @@ void Package::plan() {
 
 // ---- pins --------------------------------------------------------------------------------------------------------
 
-/// 0: a strobe that ends, 2: a strobe that begins, 1: anything else.
-int Package::rank(int pin, int level) const {
-    const bool motorola = dpchip_pins_get_pin(part_.get(), DPCHIP_PIN_XINT_MOT) == DPCHIP_HIGH;
-    const bool synchronous = dpchip_pins_get_pin(part_.get(), DPCHIP_PIN_MODE) == DPCHIP_HIGH;
-    if (motorola && synchronous && pin == DPCHIP_PIN_XWR_E_CLOCK_AB11) return level == DPCHIP_HIGH ? 2 : 0;
-    const bool low_active = motorola ? !synchronous && pin == DPCHIP_PIN_ALE_AS_AB11
-                                     : pin == DPCHIP_PIN_XWR_E_CLOCK_AB11 || pin == DPCHIP_PIN_XRD_R_W;
-    if (!low_active) return 1;
-    return level == DPCHIP_LOW ? 2 : 0;
-}
-
+/// Inputs that change together change at one tick: the model's checks count time, not the order of calls.
 void Package::take_inputs() {
-    struct Change {
-        int rank, pin, level;
-    };
-    std::array<Change, 32> changes{};
-    std::size_t n = 0;
-    const auto note = [&](int pin, int& known, int level) {
+    const auto tell = [this](int pin, int& known, int level) {
         if (level == known) return;
         known = level;
-        changes[n++] = {rank(pin, level), pin, level};
+        check(dpchip_pins_set_pin(part_.get(), pin, level));
     };
     for (Input& input : inputs_) {
         const sc_logic& value = input.port->read();
         input.driven = input.driven || value != sc_dt::SC_LOGIC_X;
-        if (input.driven) note(input.pin, input.level, from_logic(value));
+        if (input.driven) tell(input.pin, input.level, from_logic(value));
     }
-    for (Data& data : data_) note(data.pin, data.level, from_board(data.port->read(), data));
-    std::stable_sort(changes.begin(), changes.begin() + n, [](const Change& a, const Change& b) { return a.rank < b.rank; });
-    for (std::size_t i = 0; i < n; ++i) check(dpchip_pins_set_pin(part_.get(), changes[i].pin, changes[i].level));
+    for (Data& data : data_) tell(data.pin, data.level, from_board(data.port->read(), data));
 }
 
 /// What the board drives on a DB signal that shows what board and part drive together.

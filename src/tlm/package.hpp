@@ -8,8 +8,7 @@
 // of the settings, which is exact and costs no events; CLK bound means that rising edges there set the phase.
 //
 // Z at an input is Z; X is taken for Z, because nobody drives a defined level, except that a signal which has been X since
-// the start counts as idle. Inputs that change in the same delta cycle
-// are taken in the order that set-up and hold times of 0 ask for: strobes that end, everything else, strobes that begin.
+// the start counts as idle. Inputs that change in one delta cycle change at the same time.
 //
 // Not modelled: volts, currents, slopes, test modes behind XTEST1.
 #pragma once
@@ -91,7 +90,6 @@ private:
     void step();
     void check(int code);
     void plan();
-    int rank(int pin, int level) const;
     void take_inputs();
     static int from_board(const sc_dt::sc_logic& resolved, const Data& data);
     void show_outputs();

@@ -103,6 +103,25 @@ TEST(TlmPackage, a_strobe_that_is_too_short_is_a_finding_that_names_the_paramete
     });
 }
 
+TEST(TlmPackage, an_address_that_changes_together_with_E_CLOCK_has_no_set_up_time) {
+    simulate([] {
+        const Reports findings{report::kFinding};
+        PinBoard b{"board", {}, Bus::sync_motorola};
+        b.program = [&] {
+            b.power_up();
+            EXPECT_EQ(b.read(0x100), 0x00);
+            b.ab[3].write(sc_dt::SC_LOGIC_1);
+            b.xcs.write(sc_dt::SC_LOGIC_0);
+            b.xwr.write(sc_dt::SC_LOGIC_1);
+            sc_core::wait(ns(140));
+            b.xwr.write(sc_dt::SC_LOGIC_0);
+        };
+        sc_core::sc_start(us(5));
+        EXPECT_EQ(b.package.violations(33), 1) << findings.text();
+        EXPECT_EQ(b.package.violations(), 1) << findings.text();
+    });
+}
+
 TEST(TlmPackage, who_drives_the_bus_during_a_read_collides_with_the_part) {
     simulate([] {
         const Reports findings{report::kFinding};

@@ -70,7 +70,10 @@ void PinBoard::begin(std::uint16_t address, bool write, std::uint8_t value) {
 void PinBoard::end() {
     xcs.write(sc_dt::SC_LOGIC_1);
     xwr.write(logic(bus_ == Bus::async_intel));
-    if (bus_ == Bus::async_intel) xrd.write(sc_dt::SC_LOGIC_1);
+    if (bus_ == Bus::async_intel) {
+        xrd.write(sc_dt::SC_LOGIC_1);
+        for (PinBoard::Wire& wire : ab) wire.write(sc_dt::SC_LOGIC_1);
+    }
     if (bus_ == Bus::async_motorola) as.write(sc_dt::SC_LOGIC_1);
     sc_core::wait(ns(20));
     drive_data(sc_dt::SC_LOGIC_Z);
