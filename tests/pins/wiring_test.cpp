@@ -90,7 +90,7 @@ TEST(WiringCheck, A_resistor_gives_way_to_a_line) {
     EXPECT_EQ(w.cut(PinId::xcs_ab11).add(pull_up("10 kOhm", PinId::xcs_ab11)).tied(PinId::xcs_ab11), PinLevel::high);
 }
 
-// proves: E037
+// proves: VPC3C 8.1.2-24, E037
 TEST(WiringCheck, What_is_unused_depends_on_the_mode_and_on_AB11) {
     struct Case {
         PinLevel xint_mot, mode;
