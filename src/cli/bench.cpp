@@ -2,6 +2,7 @@
 // `dpchip bench`: how fast the model is on this machine, each workload beside its floor.
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 
 #include <dpchip/cli/commands.hpp>
 
+#include "uart_tolerance.hpp"
 #include "workloads.hpp"
 
 namespace dpchip::cli {
@@ -21,6 +23,8 @@ struct Options {
     std::uint64_t repetitions = 5;
     double scale = 1;
     bool json = false;
+    bool uart = false;
+    std::string svg;
 };
 
 const bench::Workload& find(const std::string& name) {
@@ -47,7 +51,21 @@ void print(const bench::Result& r) {
     if (r.real_time > 0) fmt::print("  {:.0f} times real time\n", r.real_time);
 }
 
+/// What the UART's receiver bears, as text and as a drawing.
+ExitCode uart_tolerance(const Options& o) {
+    const bench::ToleranceMap controlled = bench::measure_tolerance(true), uncontrolled = bench::measure_tolerance(false);
+    fmt::print("{}\n{}", bench::tolerance_text(controlled), bench::tolerance_text(uncontrolled));
+    if (o.svg.empty()) return ExitCode::ok;
+    std::ofstream file{o.svg, std::ios::binary | std::ios::trunc};
+    file << bench::tolerance_svg(controlled, uncontrolled);
+    file.close();
+    if (!file) throw Failure{ExitCode::failed, o.svg + ": cannot be written"};
+    return ExitCode::ok;
+}
+
 ExitCode run(const Options& o) {
+    if (!o.svg.empty() && !o.uart) throw Failure{ExitCode::usage, "--svg is the drawing of --uart"};
+    if (o.uart) return uart_tolerance(o);
     std::vector<const bench::Workload*> chosen;
     for (const std::string& name : o.names) chosen.push_back(&find(name));
     if (chosen.empty())
@@ -73,7 +91,9 @@ void add_bench(CLI::App& app, Job& job) {
     sub->add_option("--repetitions", o->repetitions, "measurements of each; the median counts")->capture_default_str()->check(CLI::Range(1, 1000));
     sub->add_option("--scale", o->scale, "times the usual number of operations")->capture_default_str()->check(CLI::Range(0.0001, 1000.0));
     sub->add_flag("--json", o->json, "an array of objects on stdout");
-    sub->footer(footer("  dpchip bench exchange --repetitions 9\nOnly ratios taken in one run mean anything on a shared machine."));
+    sub->add_flag("--uart", o->uart, "instead: which errors of the rate and which distortion of bits the receiver bears (docs/uart.md)");
+    sub->add_option("--svg", o->svg, "with --uart: a drawing of it")->type_name("FILE.svg");
+    sub->footer(footer("  dpchip bench exchange --repetitions 9\n  dpchip bench --uart --svg docs/uart_tolerance.svg\nOnly ratios taken in one run mean anything on a shared machine."));
     sub->callback([o, &job] { job = [o] { return run(*o); }; });
 }
 

@@ -192,7 +192,7 @@ void add_sim(CLI::App& app, Job& job) {
     c->add_option("--vcd-timescale", a->vcd_timescale, "resolution of the waveforms: 1ps (default), 10ns, 100ns, ...")->type_name("UNIT");
     c->add_flag("--json", a->json, "the report as JSON");
     c->footer(footer("  dpchip sim examples/scenario.toml --trace scenario.pcapng\n"
-                     "  dpchip sim examples/scenario.toml --for 20ms --vcd scenario.vcd --signals 'line.*,Press.*'\n"
+                     "  dpchip sim examples/scenario.toml --vcd scenario.vcd --to 20ms --signals 'line.*,Press.*'\n"
                      "Line time is virtual and exact; the file decides what happens when (docs/config.md).\n"
                      "Exit code 1: a slave not in data exchange at the end, wrong inputs, or rules of the bus broken without injected fault."));
     c->callback([a, &job] { job = [a] { return run(*a); }; });

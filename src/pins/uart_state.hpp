@@ -60,7 +60,7 @@ struct UartState {
     std::uint8_t done = 0;       ///< a complete character waits for its end
     std::uint8_t done_octet = 0, done_faults = 0;
     TxPhase tx = TxPhase::off;
-    std::uint8_t tx_slot = 0;    ///< bit boundary of the present character that comes next, 1..11
+    std::uint8_t tx_slot = 0;    ///< bit boundary of the present character that comes next, 0..11
     PinLevel txd = PinLevel::z;
     std::array<std::uint8_t, 7> spare{};  ///< fills the last eight octets
 };
@@ -102,7 +102,7 @@ static_assert(detail::described_uart_octets() == sizeof(UartState), "a UartState
 constexpr bool plausible(const UartState& s) {
     const bool enums = s.rx <= RxPhase::bits && s.tx <= TxPhase::trail && s.rxd <= PinLevel::high && s.level <= PinLevel::high &&
                        s.txd <= PinLevel::z && static_cast<std::size_t>(s.rate) < fdl::kBaudRates;
-    const bool counts = s.bit <= 9 && s.tx_slot >= (s.tx == TxPhase::bits ? 1 : 0) && s.tx_slot <= 11 && s.tx_count <= 255 &&
+    const bool counts = s.bit <= 9 && s.tx_slot <= 11 && s.tx_count <= 255 &&
                         s.tx_index <= s.tx_count && s.done <= 1;
     const bool samples = s.sampled >= 0 && s.changed < s.sampled && s.s0 < s.sampled + 1 && s.before <= s.s0 && s.done_s0 <= s.sampled;
     const bool times = s.grid_origin >= Ticks{} && s.rxd_since >= Ticks{} && s.idle_since >= Ticks{} && s.tx_start >= Ticks{} && s.tx_bit >= Ticks{};
