@@ -61,7 +61,7 @@ void Biu::pins_changed(const InputLevels& in, const Clk& clk, const BiuContext& 
     case Phase::idle: return;
     case Phase::waiting:
         if (!active) phase_ = Phase::idle;
-        else if (selected(in)) open(in, clk, context, s, now, timing);
+        else if (selected(in)) open(clk, context, s, now, timing);
         return;
     case Phase::open:
         if (s == Strobe::both) return drop(timing, now);
@@ -81,7 +81,7 @@ void Biu::pins_changed(const InputLevels& in, const Clk& clk, const BiuContext& 
     }
 }
 
-void Biu::open(const InputLevels&, const Clk& clk, const BiuContext& context, Strobe s, Ticks now, TimingCheck& timing) {
+void Biu::open(const Clk& clk, const BiuContext& context, Strobe s, Ticks now, TimingCheck& timing) {
     if (context.in_reset || s == Strobe::both) {
         complaints_.push(context.in_reset ? PinRule::access_in_reset : PinRule::both_strobes);
         phase_ = Phase::dead;

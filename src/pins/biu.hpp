@@ -93,7 +93,7 @@ private:
     Strobe strobe(const InputLevels& in) const;
     bool selected(const InputLevels& in) const;
     std::uint16_t address(const InputLevels& in, bool has_ab11) const;
-    void open(const InputLevels& in, const Clk& clk, const BiuContext& context, Strobe strobe, Ticks now, TimingCheck& timing);
+    void open(const Clk& clk, const BiuContext& context, Strobe strobe, Ticks now, TimingCheck& timing);
     void end(const InputLevels& in, const Clk& clk, const BiuContext& context, Ticks now);
     void release(Ticks now);
     void drop(TimingCheck& timing, Ticks now);

@@ -71,9 +71,11 @@ public:
     /// drains it every time loses none.
     core::FixedQueue<PinEdge, 256>& edges() { return edges_; }
     void watch(PinId pin, bool on);
-    /// Rising edges of CLK lie at `phase` (0 .. kClk - 1) and every kClk from there on.
+    /// Rising edges of CLK lie at `phase` (0 .. kClk - 1) and every kClk from there on. Before the first RESET: the UART
+    /// begins anew.
     void set_clock_phase(Ticks phase);
-    /// The board drives CLK at now(); the edge lasts `slope`. A rising edge sets the phase.
+    /// The board drives CLK at now(); the edge lasts `slope`. A rising edge sets the phase of bus and CLKOUT2/4; the UART
+    /// keeps its grid.
     void clock_edge(PinLevel level, Ticks slope = {});
     const Clk& clk() const { return clk_; }
 

@@ -43,6 +43,7 @@ TEST(FixedQueue, behaves_like_a_deque_with_a_limit) {
             if (model.size() < 5) model.push_back(i);
             else ++dropped;
         } else if (!model.empty()) {
+            ASSERT_EQ(queue.front(), model.front());
             ASSERT_EQ(queue.pop(), model.front());
             model.pop_front();
         }

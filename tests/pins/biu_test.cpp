@@ -36,13 +36,13 @@ void strobe(Part& part, bool read, bool active) {
 /// Selects `address`; in synchronous Intel mode with its ALE.
 void point_at(Part& part, std::uint16_t address, bool read = true) {
     const ProcessorMode mode = part.bus.mode();
-    const unsigned lines = mode == ProcessorMode::sync_intel ? address >> 8 : address;
+    const unsigned lines = mode == ProcessorMode::sync_intel ? address >> 8u : address;
     for (std::size_t i = 0; i < pins::kAddressBus.size(); ++i) part.set(pins::kAddressBus[i], (lines >> i & 1u) != 0 ? 1 : 0);
     if (regmap::motorola(mode)) part.set(PinId::xrd_r_w, read ? 1 : 0);
     if (mode != ProcessorMode::sync_intel) part.set(PinId::xcs_ab11, 0);
     part.wait(20_ns);
     if (mode != ProcessorMode::sync_intel) return;
-    for (std::size_t i = 0; i < 8; ++i) part.set(pins::kDataBus[i], (address >> i & 1u) != 0 ? 1 : 0);
+    for (std::size_t i = 0; i < 8; ++i) part.set(pins::kDataBus[i], core::bit(address, static_cast<unsigned>(i)) ? 1 : 0);
     part.set(PinId::ale_as_ab11, 1);
     part.wait(20_ns);
     part.set(PinId::ale_as_ab11, 0);
