@@ -2,6 +2,7 @@
 // Findings of the package in words, whatever numbers a record holds.
 #include <gtest/gtest.h>
 
+#include <dpchip/core/bits.hpp>
 #include <dpchip/regmap/pin_rules.hpp>
 #include <dpchip/trace/pin_finding_text.hpp>
 
