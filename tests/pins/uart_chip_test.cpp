@@ -84,7 +84,7 @@ std::vector<Ticks> back_to_back(Ticks start, std::size_t count, Ticks bit) {
 
 const Octets kOk = hex(kFdlStatusOk);
 
-// proves: VPC3C 8.3-01, VPC3C 8.3-03, VPC3C 3.1-06, VPC3C 9.1-01
+// proves: VPC3C 8.3-01, VPC3C 8.3-03, VPC3C 8.3-10, VPC3C 3.1-06, VPC3C 9.1-01, VPC3C 9.1-04..05
 TEST(UartTransmitter, an_answer_is_on_TXD_edge_by_edge_at_every_rate_and_RTS_encloses_it) {
     for (const fdl::Baud& baud : fdl::kBaud) {
         SCOPED_TRACE(baud.name);
@@ -261,6 +261,7 @@ TEST(UartWindow, a_stop_bit_may_be_a_quarter_shorter_or_longer_and_much_more_und
     }
 }
 
+// proves: VPC3C 8.3-12
 TEST(UartWindow, half_a_stop_bit_is_enough_when_neither_start_nor_stop_is_controlled) {
     Recipe r = at(fdl::BaudCode::mbit_1_5);
     r.mode0 |= regmap::mode0::dis_start_control | regmap::mode0::dis_stop_control;

@@ -9,7 +9,7 @@ constexpr Ticks kBegin = 1_ms;
 
 Ticks on_grid(const Rig& rig, Ticks at) { return rig.uart.next_sample_from(at); }
 
-// proves: VPC3C 8.3-02
+// proves: VPC3C 8.3-02, VPC3C 8.3-11, VPC3C 9.1-06
 TEST(UartReceiver, every_octet_at_every_rate_comes_out_at_its_very_time_when_its_edges_lie_on_the_grid) {
     for (const fdl::Baud& baud : fdl::kBaud) {
         Rig rig{baud.code};
