@@ -226,7 +226,7 @@ std::string hex(std::uint32_t address) {
 
 /// "<- A8": a line that drives the pin; "-> INT0": one that the chip drives.
 std::string at_other_end(const pins::Connection& c) {
-    const std::string line = (c.inverted ? "not " : "") + std::string{c.line};
+    std::string line = (c.inverted ? "not " : "") + std::string{c.line};
     switch (c.end) {
     case pins::FarEnd::drives: return "<- " + line;
     case pins::FarEnd::listens: return "-> " + line;

@@ -18,14 +18,14 @@ Plan board_hc11() {
         {
             from("XCS", PinId::xcs_ab11), from("E", PinId::xwr_e_clock_ab11), from("R/W", PinId::xrd_r_w),
             pull_down("1 kOhm", PinId::ale_as_ab11),                                    // not used with 2 KB
-            to("XIRQ", PinId::x_int),
+            to("IRQ", PinId::x_int),
             on_vdd(PinId::mode), on_vdd(PinId::xint_mot),                               // synchronous Motorola
             on_gnd(PinId::divider), to("EXTAL", PinId::clkout),                         // 12 MHz
             from("RESET", PinId::reset),
         }}),
         .clock_line = "EXTAL",
         .base = 0x2000, .selected = {0x2000, 0x27FF}, .swept = {0x0000, 0xFFFF},
-        .interrupt_line = "XIRQ",
+        .interrupt_line = "IRQ",
         .make = [](Circuit& c, Ticks period) { return std::make_unique<Hc11>(c, period, Decoder{.mask = 0xF800, .value = 0x2000, .delay = 10_ns}); },
         .bus_mode = driver::BusMode::motorola,
     };

@@ -18,14 +18,14 @@ Plan board_hc16() {
         {
             from("XCS", PinId::xcs_ab11), from("XAS", PinId::ale_as_ab11), from("R/W", PinId::xrd_r_w),
             pull_down("1 kOhm", PinId::xwr_e_clock_ab11),                               // not used with 2 KB
-            to("XDSACK0", PinId::xready_xdtack), to("XIRQ6", PinId::x_int),
+            to("XDSACK0", PinId::xready_xdtack), to("IRQ6", PinId::x_int),
             on_gnd(PinId::mode), on_vdd(PinId::xint_mot),                               // asynchronous Motorola
             on_gnd(PinId::divider),
             from("RESET", PinId::reset),
         }}),
         .crystal_hz = 16'777'216,
         .base = 0x84000, .selected = {0x84000, 0x87FFF}, .swept = {0x00000, 0xFFFFF}, .step = 0x800,
-        .interrupt_line = "XIRQ6",
+        .interrupt_line = "IRQ6",
         .make = [](Circuit& c, Ticks period) { return std::make_unique<Hc16>(c, period, Decoder{.mask = 0xFC000, .value = 0x84000, .delay = 9.5_ns}); },
         .bus_mode = driver::BusMode::motorola,
     };
