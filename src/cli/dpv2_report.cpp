@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// DP-V2 of a simulation in words and as JSON.
+// DP-V2 of slaves in words, of a simulation also as JSON.
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ std::optional<std::int64_t> clock_error_ns(const Simulation& s, const slave::Vir
     return time->minus_ns(master.start.plus_ns(core::to_ns(s.now())));
 }
 
-std::string words(const Simulation& s, const Dpv2Entry& entry, const slave::VirtualSlave& slave) {
+std::string words(const Dpv2Entry& entry, const slave::VirtualSlave& slave, std::optional<std::int64_t> clock_error_ns) {
     const slave::Dpv2Counters& c = slave.dpv2_counters();
     std::string text;
     const auto say = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
@@ -38,24 +38,27 @@ std::string words(const Simulation& s, const Dpv2Entry& entry, const slave::Virt
     if (const driver::SynchMeter& m = slave.synch_meter(); slave.plan().driver.sync_ena && m.synchs() != 0)
         say(fmt::format("{} SYNCHs, {:.6f} to {:.6f} us apart, {} late, {} missing", m.synchs(), in_us(m.shortest()), in_us(m.longest()), m.late(), m.missing()));
     else if (entry.simple_sync) say(fmt::format("{} times outputs with a SYNCH", c.synchs));
-    if (const auto error = clock_error_ns(s, slave))
-        say(fmt::format("clock {:+.3f} us, set {} times, crystal {:+d} ppb", static_cast<double>(*error) / 1e3, c.times_set, -slave.clock_rate_ppb()));
+    if (clock_error_ns)
+        say(fmt::format("clock {:+.3f} us, set {} times, crystal {:+d} ppb", static_cast<double>(*clock_error_ns) / 1e3, c.times_set, -slave.clock_rate_ppb()));
     if (slave.redundancy().role() != driver::Role::none) say(name(slave.redundancy().role()));
     return text;
 }
 
 }  // namespace
 
+void report_dpv2(const SlaveEntry& entry, const slave::VirtualSlave& slave, std::optional<std::int64_t> clock_error_ns) {
+    const std::string text = words(entry.dpv2, slave, clock_error_ns);
+    if (!text.empty()) std::printf("%s: %s\n", title(entry).c_str(), text.c_str());
+}
+
 void report_dpv2(const Simulation& s) {
-    for (const Simulation::Member& m : s.members()) {
-        const std::string text = m.on ? words(s, m.entry.dpv2, *m.slave) : std::string{};
-        if (!text.empty()) std::printf("%s: %s\n", title(m.entry).c_str(), text.c_str());
-    }
+    for (const Simulation::Member& m : s.members())
+        if (m.on) report_dpv2(m.entry, *m.slave, clock_error_ns(s, *m.slave));
 }
 
 void report_dpv2(const Simulation& s, std::size_t n, nlohmann::ordered_json& entry) {
     const Simulation::Member& m = s.members()[n];
-    if (!m.on || words(s, m.entry.dpv2, *m.slave).empty()) return;
+    if (!m.on || words(m.entry.dpv2, *m.slave, clock_error_ns(s, *m.slave)).empty()) return;
     const slave::Dpv2Counters& c = m.slave->dpv2_counters();
     const driver::SynchMeter& meter = m.slave->synch_meter();
     nlohmann::ordered_json j{{"samples", c.samples}, {"links", m.slave->links().size()}, {"link_errors", c.link_errors}, {"synchs", c.synchs}};

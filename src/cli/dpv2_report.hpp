@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a simulation measured of DP-V2: samples, SYNC pulses, clocks, roles.
+// What slaves did in DP-V2 and a simulation measured: samples, SYNC pulses, clocks, roles.
 #pragma once
+
+#include <cstdint>
+#include <optional>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -8,6 +11,8 @@
 
 namespace dpchip::cli {
 
+/// A line, if the slave has something to say. `clock_error_ns`: its time minus the master's, where that is known.
+void report_dpv2(const SlaveEntry& entry, const slave::VirtualSlave& slave, std::optional<std::int64_t> clock_error_ns = {});
 /// A line for each slave that has something to say.
 void report_dpv2(const Simulation& simulation);
 /// The same under "dpv2" of a slave's entry.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <dpchip/cli/live_master.hpp>
+#include <dpchip/cli/master_setup.hpp>
 
 namespace dpchip::cli {
 namespace {
@@ -15,20 +16,20 @@ constexpr Ticks kSerialPatience = core::milliseconds(50);
 /// A master that only asks now and then does not fill a pty with tokens.
 constexpr Ticks kIdleCycle = core::milliseconds(5);
 
-master::MasterConfig master_config_of(const LineConfig& config, const LiveMaster::Options& options) {
-    if (config.masters.size() > 1) refuse(config.masters[1].at, "this program is one master; one [[master]] is possible");
-    MasterEntry entry;
-    if (!config.masters.empty()) entry = config.masters[0];
-    master::MasterConfig m;
-    m.address = entry.address;
-    m.baud = config.baud.value_or(fdl::BaudCode::kbit_19_2);
-    m.max_retry = entry.max_retry;
-    m.gap_factor = entry.gap_factor;
-    m.min_cycle = entry.min_cycle;
-    m.mode = options.mode == master::Mode::operate ? entry.mode : options.mode;
+/// Nothing on a live line is exact to a bit: no equidistant cycle, no clock that others could follow.
+void refuse_exact_time(const LineConfig& config) {
+    for (const MasterEntry& m : config.masters) {
+        if (m.dpv2.isochron != Ticks{}) refuse(m.at, "isochron needs exact time, which only a simulated line has (dpchip sim)");
+        if (m.dpv2.clock_sync != Ticks{}) refuse(m.at, "clock_sync needs exact time, which only a simulated line has (dpchip sim)");
+    }
+}
+
+master::MasterConfig live_config(const LineConfig& config, const LiveMaster::Options& options) {
+    refuse_exact_time(config);
+    master::MasterConfig m = master_config(config, fdl::BaudCode::kbit_19_2);
+    if (options.mode != master::Mode::operate) m.mode = options.mode;
     if (m.mode == master::Mode::stop) m.min_cycle = std::max(m.min_cycle, kIdleCycle);
-    if (config.slot_time) m.slot_time = config.slot_time->at(m.baud);
-    else if (options.slot_time) m.slot_time = *options.slot_time;
+    if (!config.slot_time && options.slot_time) m.slot_time = *options.slot_time;
     return m;
 }
 
@@ -37,23 +38,17 @@ master::MasterConfig master_config_of(const LineConfig& config, const LiveMaster
 LiveMaster::LiveMaster(const LineConfig& config, const Options& options) : config_{config} {
     if (!config_.line) throw Failure{ExitCode::usage, "which line? Give --line PATH, --line serial:DEVICE or --line tcp:HOST:PORT"};
     if (config_.baud_auto) throw Failure{ExitCode::usage, "--baud auto is for slaves: a master decides on the rate"};
-    master::MasterConfig m = master_config_of(config_, options);
+    master::MasterConfig m = live_config(config_, options);
     check_addresses(config_, m.address);
     live::LineOptions line;
     line.baud = m.baud;
-    std::vector<master::SlaveConfig> slaves;
-    for (const SlaveEntry& entry : config_.slaves) {
-        if (entry.address == 126) refuse(entry.at, "a slave with address 126 has to get another one first");
-        const gsd::Gsd& gsd = shelf_.get(entry.gsd, entry.at);
-        slaves.push_back(cli::master_config(gsd, entry, options.watchdog_ms));
-        texts_.set(slaves.back().address, &gsd);
-    }
+    const std::vector<master::SlaveConfig> slaves = slave_configs(config_, shelf_, options.watchdog_ms);
+    for (std::size_t i = 0; i < slaves.size(); ++i) texts_.set(slaves[i].address, &gsd(i));
     open_ = std::make_unique<live::OpenLine>(*config_.line, live::Role::visit, line);
     if (m.slot_time == Ticks{})
         m.slot_time = std::max(open_->line().slot_time(), open_->port().medium() == live::Medium::serial ? kSerialPatience : Ticks{});
     master_ = std::make_unique<master::Master>(m);
-    for (std::size_t i = 0; i < slaves.size(); ++i)
-        if (const auto added = master_->add(slaves[i]); !added) refuse(config_.slaves[i].at, title(config_.slaves[i]) + ": " + master::name(added.error()));
+    add_slaves(*master_, config_, slaves);
     const auto attached = open_->line().segment().attach(*master_, "master");
     if (!attached) throw Failure{ExitCode::failed, segment::name(attached.error())};
     index_ = *attached;

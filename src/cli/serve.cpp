@@ -8,6 +8,7 @@
 
 #include <dpchip/cli/command_input.hpp>
 #include <dpchip/cli/commands.hpp>
+#include <dpchip/cli/dpv2_report.hpp>
 #include <dpchip/cli/event_config.hpp>
 #include <dpchip/cli/interrupt.hpp>
 #include <dpchip/cli/live_view.hpp>
@@ -193,6 +194,7 @@ void Server::summary(const live::LiveLine& line) const {
                         std::to_string(n.watchdog_timeouts)});
     }
     print(rows);
+    for (const Served& s : served_) report_dpv2(s.entry, *s.slave);
 }
 
 ExitCode Server::run() {

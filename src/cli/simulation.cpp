@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <dpchip/cli/log.hpp>
+#include <dpchip/cli/master_setup.hpp>
 #include <dpchip/cli/simulation.hpp>
 #include <dpchip/cli/stop_signal.hpp>
 #include <dpchip/cli/slave_events.hpp>
@@ -14,22 +15,6 @@ namespace {
 
 constexpr std::uint32_t kWatchdogMs = 100;
 constexpr Ticks kLongest = core::seconds(3600);
-
-master::MasterConfig master_config_of(const LineConfig& config) {
-    if (config.masters.size() > 1) refuse(config.masters[1].at, "one [[master]] is possible: the master does not share the bus with others");
-    MasterEntry entry;
-    if (!config.masters.empty()) entry = config.masters[0];
-    master::MasterConfig m;
-    m.address = entry.address;
-    m.baud = config.baud.value_or(fdl::BaudCode::mbit_12);
-    m.max_retry = entry.max_retry;
-    m.gap_factor = entry.gap_factor;
-    m.min_cycle = entry.min_cycle;
-    m.mode = entry.mode;
-    apply_dpv2(m, entry.dpv2);
-    if (config.slot_time) m.slot_time = config.slot_time->at(m.baud);
-    return m;
-}
 
 std::vector<Application::Wish> wishes(const LineConfig& config) {
     std::vector<Application::Wish> all;
@@ -56,19 +41,14 @@ segment::Fault Simulation::Faults::operator()(const fdl::Transmission&, segment:
 Simulation::Simulation(const LineConfig& config) : config_{config} {
     if (config_.slaves.empty()) refuse({config_.file, 0, 0}, "a scenario needs at least one [[slave]]");
     if (config_.baud_auto) refuse({config_.file, 0, 0}, "baud = \"auto\" is for live lines");
-    const master::MasterConfig m = master_config_of(config_);
+    const master::MasterConfig m = master_config(config_, fdl::BaudCode::mbit_12);
     check_addresses(config_, m.address);
     master_ = std::make_unique<master::Master>(m);
     application_ = std::make_unique<Application>(wishes(config_));
     master_index_ = *segment_.attach(*master_, "master");
+    add_slaves(*master_, config_, slave_configs(config_, shelf_, kWatchdogMs));
     for (const SlaveEntry& entry : config_.slaves) {
-        if (entry.address == 126) refuse(entry.at, "a slave with address 126 has to get another one first");
         const gsd::Gsd& gsd = shelf_.get(entry.gsd, entry.at);
-        master::SlaveConfig slave = master_config(gsd, entry, kWatchdogMs);
-        apply_dpv2(slave, gsd, entry.dpv2, config_.masters.empty() ? MasterDpv2Entry{} : config_.masters[0].dpv2,
-                   [this](std::uint8_t address) { return inputs_of(address); });
-        if (const auto added = master_->add(slave); !added)
-            refuse(entry.at, title(entry) + ": " + master::name(added.error()));
         Member member{entry, make_slave(gsd, entry), {}, true, false, 0};
         members_.push_back(std::move(member));
         attach(members_.back());
@@ -82,12 +62,6 @@ Simulation::Simulation(const LineConfig& config) : config_{config} {
 }
 
 /// What the slave with this address publishes.
-std::optional<std::uint8_t> Simulation::inputs_of(std::uint8_t address) {
-    for (const SlaveEntry& entry : config_.slaves)
-        if (entry.address == address) return static_cast<std::uint8_t>(configure(shelf_.get(entry.gsd, entry.at), entry).input_octets);
-    return std::nullopt;
-}
-
 /// The master dies at this very moment. A backup with its address and its state hears silence and goes on.
 void Simulation::switch_over() {
     const master::Mode mode = master_->mode();

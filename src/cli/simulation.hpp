@@ -80,7 +80,6 @@ private:
     void tell();
     void control(const EventEntry& event);
     void switch_over();
-    std::optional<std::uint8_t> inputs_of(std::uint8_t address);
     void advance_to(Ticks end, std::optional<std::uint64_t> cycles);
     void look_at_waves();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // DP-V2 from TOML: publishers and links, isochronous cycles, clocks, Simple Sync Mode, a switch-over (docs/config.md).
+#include <csignal>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 
 namespace {
 
+using dpchip::test::Program;
 using dpchip::test::Result;
 using dpchip::test::run;
 using Json = nlohmann::json;
@@ -60,6 +62,43 @@ TEST(SimDpv2, refuses_what_the_GSD_does_not_have_and_links_to_nobody) {
         const Result r = run({"sim", "-", "--for", "10ms"}, row.text);
         EXPECT_EQ(r.code, 4) << row.text << r.out;
         EXPECT_NE(r.err.find(row.words), std::string::npos) << row.words << '\n' << r.err;
+    }
+}
+
+const std::string kPublisherAndSubscriber = R"(
+[[slave]]
+name = "Axis"
+gsd = ")" DPCHIP_SOURCE_DIR R"(/examples/dxb_station.gsd"
+modules = ["8 in, 8 out"]
+address = 10
+publisher = true
+io = "counter"
+[[slave]]
+name = "Gripper"
+gsd = ")" DPCHIP_SOURCE_DIR R"(/examples/dxb_station.gsd"
+modules = ["8 in, 8 out"]
+address = 20
+[[slave.link]]
+publisher = 10
+)";
+
+TEST(LiveDpv2, a_subscriber_on_a_pty_hears_a_publisher_that_the_master_polls) {
+    Program server{{"serve", "-", "--baud", "12M"}, kPublisherAndSubscriber};
+    const std::string path = server.line().substr(10);
+    const Result r = run({"master", "run", "-", "--line", path, "--baud", "12M", "--cycles", "30", "-q"}, kPublisherAndSubscriber);
+    EXPECT_EQ(r.code, 0) << r.err << r.out;
+    server.signal(SIGINT);
+    EXPECT_EQ(server.wait(), 0);
+    EXPECT_NE(server.out().find("publisher"), std::string::npos) << server.out();
+    EXPECT_NE(server.out().find("samples over 1 links, 0 times broken"), std::string::npos) << server.out();
+    EXPECT_EQ(server.out().find(" 0 samples"), std::string::npos) << server.out();
+}
+
+TEST(LiveDpv2, exact_time_is_refused_on_a_live_line) {
+    for (const char* key : {"isochron = \"1ms\"", "clock_sync = \"100ms\""}) {
+        const Result r = run({"master", "run", "-", "--line", "tcp:127.0.0.1:1"}, std::string{"[[master]]\naddress = 1\n"} + key + "\n" + kPublisherAndSubscriber);
+        EXPECT_EQ(r.code, 4) << r.err;
+        EXPECT_NE(r.err.find("exact time"), std::string::npos) << r.err;
     }
 }
 
