@@ -51,7 +51,8 @@ public:
     tlm_utils::simple_target_socket<Chip> bus{"bus"};
     /// The line; left unbound, the chip has one to itself.
     sc_core::sc_port<LineChipIf, 1, sc_core::SC_ZERO_OR_MORE_BOUND> line{"line"};
-    /// Pin levels: X/INT is active low until INT_Pol says otherwise, XDATAEXCH is low in DATA-EXCH.
+    /// Pin levels: X/INT is active low until INT_Pol says otherwise, XDATAEXCH is low in DATA-EXCH. Both are 1 after RESET:
+    /// give their signals that as initial value, or they rise at time 0.
     sc_core::sc_out<bool> x_int{"x_int"}, xdataexch_sync{"xdataexch_sync"};
     /// RESET, active high, and XCTS, low lets the chip send; both may stay unbound.
     sc_core::sc_port<sc_core::sc_signal_in_if<bool>, 1, sc_core::SC_ZERO_OR_MORE_BOUND> reset{"reset"}, xcts{"xcts"};

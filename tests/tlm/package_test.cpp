@@ -291,7 +291,12 @@ TEST(TlmPackage, the_start_up_through_nothing_but_pins_ends_as_at_telegram_level
     simulate([] {
         PinPlatform p;
         const startup::Result is = p.run(), should_be = startup::telegram_level(startup::Service::interrupt);
-        EXPECT_EQ(difference(is.without_times(), should_be.without_times()), "");
+        ASSERT_EQ(difference(is.without_times(), should_be.without_times()), "");
+        for (std::size_t i = 0; i < is.telegrams.size(); ++i) {
+            const Ticks late = is.telegrams[i].start - should_be.telegrams[i].start;
+            EXPECT_GE(late, 0) << "telegram " << i;
+            EXPECT_LE(late, is.telegrams[i].own ? 0 : kBit / 4) << "telegram " << i << ": the receiver samples four times a bit";
+        }
         EXPECT_EQ(p.board.package.violations(), 0);
         EXPECT_TRUE(p.firmware.exchanging());
         EXPECT_EQ(p.board.xdataexch.read(), sc_dt::SC_LOGIC_0);
