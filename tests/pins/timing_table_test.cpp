@@ -14,7 +14,6 @@
 namespace {
 
 using namespace dpchip;
-using regmap::ProcessorMode;
 using regmap::Supply;
 using regmap::TimingKind;
 
