@@ -194,7 +194,7 @@ std::vector<PrintedTable> electrical_tables(Variant v) {
         all.push_back(figures("General DC characteristics", "figure 10-3", regmap::kGeneralDc));
         all.push_back(output_cells());
         all.push_back(figures("DC characteristics at 5 V", "figure 10-5", regmap::kDc5V));
-        all.push_back(figures("DC characteristics at 3.3 V", "figure 10-6", regmap::kDc3_3V));
+        all.push_back(figures("DC characteristics at 3.3 V", "figure 10-6", regmap::kDc3V3));
     }
     all.push_back(system_timing());
     using enum regmap::ProcessorMode;

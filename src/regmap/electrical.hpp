@@ -114,7 +114,7 @@ inline constexpr std::array<ElectricalRow, kDcRows> kDc5V = [] {
 }();
 
 /// Figure 10-6: output currents are 70 % of those at 5 V.
-inline constexpr std::array<ElectricalRow, kDcRows> kDc3_3V = [] {
+inline constexpr std::array<ElectricalRow, kDcRows> kDc3V3 = [] {
     using namespace detail;
     return std::array<ElectricalRow, kDcRows>{{
     {"VCC",  "DC supply voltage",                              abs(3'000),   abs(3'300), abs(3'600),  "V"},

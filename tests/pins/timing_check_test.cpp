@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <dpchip/pins/bus_cycles.hpp>
+#include "pins/part.hpp"
 
 namespace {
 
@@ -160,6 +160,75 @@ TEST(ReadCycles, The_cycle_time_is_a_sum_and_breaks_with_a_part_of_it) {
         EXPECT_NE(words.find(std::to_string(c.cycle) + " ("), std::string::npos) << words;
         EXPECT_NE(words.find(std::to_string(c.part) + " ("), std::string::npos) << words;
     }
+}
+
+// What goes to other devices on the bus is none of the chip's business.
+TEST(OtherTraffic, Is_not_judged) {
+    for (const ProcessorMode mode : test::kModes) {
+        test::Part part{mode};
+        const auto pulse = [&](test::PinId pin, int active) {
+            part.set(pin, active);
+            part.wait(2_ns);
+            part.set(pin, 1 - active);
+            part.wait(2_ns);
+        };
+        part.set(test::PinId::ab9, 1);  // another address, and in synchronous Intel mode no select
+        for (int i = 0; i < 20; ++i) {
+            if (mode == ProcessorMode::sync_intel) pulse(test::PinId::ale_as_ab11, 1);
+            if (mode == ProcessorMode::async_motorola) pulse(test::PinId::ale_as_ab11, 0);
+            if (mode == ProcessorMode::sync_motorola) pulse(test::PinId::xwr_e_clock_ab11, 1);
+            if (!regmap::motorola(mode)) pulse(i % 2 == 0 ? test::PinId::xrd_r_w : test::PinId::xwr_e_clock_ab11, 0);
+            pulse(test::PinId::db3, 1);
+            pulse(test::PinId::ab2, 1);
+        }
+        part.wait(200_ns);
+        EXPECT_EQ(part.findings(), "") << regmap::name(mode);
+        part.set(test::PinId::ab9, 0);
+        part.bus.write(0x155, 0x77);
+        EXPECT_EQ(part.bus.read(0x155), 0x77);
+        EXPECT_EQ(part.findings(), "") << "and nothing of it sticks to the next access";
+    }
+}
+
+TEST(StableLines, That_move_inside_a_strobe_break_the_nearer_of_set_up_and_hold) {
+    struct Move { Ticks at; unsigned number; Ticks found; };
+    for (const Move m : {Move{10_ns, 16, Ticks{} - 10_ns}, Move{75_ns, 16, Ticks{} - 75_ns}, Move{80_ns, 23, Ticks{} - 70_ns}, Move{149_ns, 23, Ticks{} - 1_ns}}) {
+        test::Part part{ProcessorMode::async_intel};
+        part.set(test::PinId::xcs_ab11, 0);
+        part.wait(20_ns);
+        part.set(test::PinId::xrd_r_w, 0);
+        part.wait(m.at);
+        part.set(test::PinId::ab4, 1);
+        part.wait(150_ns - m.at);
+        part.set(test::PinId::xrd_r_w, 1);
+        const std::vector<TimingViolation> found = violations(part.package);
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_EQ(found[0], (TimingViolation{static_cast<std::uint8_t>(m.number), Supply::v5, m.found}));
+    }
+}
+
+TEST(StableLines, An_address_that_comes_after_ALE_or_R_W_that_moves_in_the_strobe_is_reported) {
+    test::Part part{ProcessorMode::sync_intel};
+    part.set(test::PinId::ale_as_ab11, 1);
+    part.wait(20_ns);
+    part.set(test::PinId::ale_as_ab11, 0);
+    part.wait(5_ns);
+    part.set(test::PinId::ab1, 1);
+    part.wait(20_ns);
+    part.set(test::PinId::xrd_r_w, 0);
+    part.wait(150_ns);
+    part.set(test::PinId::xrd_r_w, 1);
+    EXPECT_EQ(text(violations(part.package)), "3 (-300 ticks) ");
+
+    test::Part other{ProcessorMode::async_motorola};
+    other.set(test::PinId::xcs_ab11, 0);
+    other.wait(20_ns);
+    other.set(test::PinId::ale_as_ab11, 0);
+    other.wait(140_ns);
+    other.set(test::PinId::xrd_r_w, 0);
+    other.wait(10_ns);
+    other.set(test::PinId::ale_as_ab11, 1);
+    EXPECT_EQ(text(violations(other.package)), "55 (-600 ticks) ");
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, EveryCheck, testing::ValuesIn(every_check()), [](const testing::TestParamInfo<Case>& i) {
