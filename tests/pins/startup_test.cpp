@@ -35,8 +35,8 @@ static_assert(pins::BitStation<pins::Package<>>);
 /// A board: the package, a processor on its bus, and a master at the other end of the line.
 class Board {
 public:
-    Board(ProcessorMode mode, bool with_ab11, Supply supply)
-        : package_{regmap::Variant::vpc3c, supply, options()}, bus_{package_, mode, with_ab11}, firmware_{{this, &Board::read, &Board::write}, startup::Service::interrupt} {
+    Board(ProcessorMode mode, bool with_ab11, Supply supply, const pins::PackageOptions& package_options = {})
+        : package_{regmap::Variant::vpc3c, supply, options(), package_options}, bus_{package_, mode, with_ab11}, firmware_{{this, &Board::read, &Board::write}, startup::Service::interrupt} {
         line_.attach(package_);
         line_.attach(adapter_);
         bus_.set_mover([](void* self, Ticks to) { static_cast<Board*>(self)->line_.advance(to); }, this);
@@ -59,6 +59,8 @@ public:
         return result_;
     }
     pins::Package<>& package() { return package_; }
+    int transmissions() const { return transmissions_; }
+    int txd_edges() const { return txd_edges_; }
     /// The processor reads the RAM from `at` on, whenever it has nothing else to do.
     void keep_bus_busy_from(Ticks at) { busy_from_ = at; }
 
@@ -80,11 +82,23 @@ private:
     }
     bool interrupt() const { return package_.pin(PinId::x_int) == PinLevel::low; }
 
+    /// TXD is driven within RTS and high-resistance, or pulled up, outside.
+    void note(const pins::PinEdge& e) {
+        if (e.pin == PinId::rts) {
+            rts_ = e.level == PinLevel::high;
+            if (rts_) ++transmissions_;
+        }
+        if (e.pin != PinId::txd) return;
+        ++txd_edges_;
+        const PinLevel idle = package_.options().txd_pull_up ? PinLevel::high : PinLevel::z;
+        EXPECT_TRUE(rts_ || e.level == idle) << e.at.n;
+    }
+
     void run_to(Ticks end) {
         while (line_.now() < end) {
             if (line_.now() >= busy_from_ && end - line_.now() > core::microseconds(1)) static_cast<void>(bus_.read(0x7F0));
             else line_.advance(std::min(end, std::max(line_.next(), line_.now() + Ticks{1})));
-            while (!package_.edges().empty()) static_cast<void>(package_.edges().pop());
+            while (!package_.edges().empty()) note(package_.edges().pop());
             if (interrupt()) firmware_.on_interrupt();
             while (master_.pending()) {
                 const segment::Transmission t = master_.receive();
@@ -101,6 +115,8 @@ private:
     startup::Firmware firmware_;
     bool begun_ = false;
     Ticks busy_from_ = core::kNever;
+    bool rts_ = false;
+    int transmissions_ = 0, txd_edges_ = 0;
     startup::Result result_;
 };
 
@@ -144,6 +160,21 @@ TEST_P(StartUp, Through_pins_ends_as_at_telegram_level) {
     EXPECT_EQ(findings(board.package()), "");
     EXPECT_TRUE(board.package().chip().findings().empty());
     EXPECT_EQ(board.package().pin(PinId::xdataexch_sync), PinLevel::low) << "the LED of DATA-EXCH";
+}
+
+// proves: VPC3C 3.1-06, VPC3C 9.1-01, VPC3C 9.1-03, VPC3C 10.4-01
+TEST(Txd, Without_its_pull_up_floats_between_transmissions_and_is_reported_once) {
+    Board with{ProcessorMode::async_intel, false, Supply::v5}, without{ProcessorMode::async_intel, false, Supply::v5, {.txd_pull_up = false}};
+    EXPECT_EQ(with.run().telegrams, without.run().telegrams) << "this line has a termination that holds it high";
+    EXPECT_EQ(findings(with.package()), "");
+    const std::string found = findings(without.package());
+    EXPECT_EQ(found.substr(0, 20), "txd_floats at pin 26");
+    EXPECT_EQ(std::count(found.begin(), found.end(), '\n'), 1);
+    EXPECT_EQ(without.package().pin(PinId::txd), PinLevel::z);
+    EXPECT_EQ(with.package().pin(PinId::txd), PinLevel::high);
+    EXPECT_EQ(with.transmissions(), static_cast<int>(startup::answers()));
+    EXPECT_EQ(without.transmissions(), with.transmissions());
+    EXPECT_EQ(without.txd_edges(), with.txd_edges() + 2 * with.transmissions()) << "Z to 1 and 1 to Z, each time";
 }
 
 // proves: VPC3C 8.2-01, VPC3C 8.2-02
