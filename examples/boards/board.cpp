@@ -146,20 +146,18 @@ private:
         if (report_.config != driver::ConfigError::none || !firmware.driver.start()) return;
         report_.up_after = circuit_.now();
 
-        master::Master master{{.min_cycle = 500_us}};
         master::SlaveConfig slave;
         slave.address = kStation;
         slave.ident = kIdent;
         slave.cfg.assign(kCfg.begin(), kCfg.end());
         slave.input_octets = slave.output_octets = kOutputs.size();
-        if (!master.add(slave)) return;
-        pins::TelegramAdapter<master::Master> adapter{master, fdl::BaudCode::mbit_12};
-        circuit_.line().attach(adapter);
-        report_.exchanging = serve_until(firmware, [&] { return master.all_exchanging(); }, 100_ms);
+        if (!master_.add(slave)) return;
+        circuit_.line().attach(adapter_);
+        report_.exchanging = serve_until(firmware, [&] { return master_.all_exchanging(); }, 100_ms);
         report_.exchange_after = circuit_.now();
         if (!report_.exchanging) return;
-        std::ranges::copy(kOutputs, master.slave(0).outputs().begin());
-        report_.echoed = serve_until(firmware, [&] { return std::ranges::equal(master.slave(0).inputs(), kOutputs); }, 20_ms);
+        std::ranges::copy(kOutputs, master_.slave(0).outputs().begin());
+        report_.echoed = serve_until(firmware, [&] { return std::ranges::equal(master_.slave(0).inputs(), kOutputs); }, 20_ms);
     }
     bool interrupted() const {
         return interrupt_.lines()[0].level(package_) == plan_.interrupt_level;
@@ -202,6 +200,8 @@ private:
     const Plan& plan_;
     pins::Wiring wiring_;
     pins::Package<> package_;
+    master::Master master_{{.min_cycle = 500_us}};
+    pins::TelegramAdapter<master::Master> adapter_{master_, fdl::BaudCode::mbit_12};
     Circuit circuit_;
     Signal reset_, interrupt_;
     std::unique_ptr<Processor> processor_;
