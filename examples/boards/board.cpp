@@ -135,6 +135,7 @@ private:
         c.ram = plan_.ram;
         c.bus_mode = plan_.bus_mode;
         c.int_polarity = plan_.int_polarity;
+        c.test_ram = plan_.test_ram;
         c.address = kStation;
         c.ident = kIdent;
         c.cfg = kCfg;

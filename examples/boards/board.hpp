@@ -55,6 +55,7 @@ struct Plan {
     driver::RamSize ram = driver::RamSize::bytes_2048;
     driver::BusMode bus_mode = driver::BusMode::intel;
     driver::IntPolarity int_polarity = driver::IntPolarity::low;
+    bool test_ram = true;                     ///< the firmware writes and reads all of it first: four fifths of its accesses
 };
 
 struct Report {

@@ -61,17 +61,21 @@ private:
     /// While the chip drives DB, the processor does not.
     Levels look_at(const pins::Package<>& package) const {
         Levels levels;
-        for (const pins::PinInfo& p : pins::kPinTable) {
-            const std::uint64_t bit = std::uint64_t{1} << p.number();
-            if (!pins::is_input(p.id)) continue;
-            if (is_data(p.id) && package.biu().drives_data()) {
-                levels.high |= levels_.high & bit;
-                levels.driven |= levels_.driven & bit;
-                continue;
-            }
-            if (package.pin(p.id) == pins::PinLevel::high) levels.high |= bit;
-            if (package.pin(p.id) != pins::PinLevel::z) levels.driven |= bit;
+        const auto take = [&](PinId pin) {
+            const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(pin);
+            const pins::PinLevel level = package.pin(pin);
+            if (level == pins::PinLevel::high) levels.high |= bit;
+            if (level != pins::PinLevel::z) levels.driven |= bit;
+            return bit;
+        };
+        std::uint64_t data = 0;
+        for (const PinId pin : pins::kDataBus) data |= take(pin);
+        if (package.biu().drives_data()) {
+            levels.high = levels_.high & data;
+            levels.driven = levels_.driven & data;
         }
+        for (const PinId pin : pins::kAddressBus) take(pin);
+        for (const PinId pin : {PinId::xcs_ab11, PinId::xwr_e_clock_ab11, PinId::xrd_r_w, PinId::ale_as_ab11}) take(pin);
         return levels;
     }
     static bool is_data(PinId pin) { return pins::info(pin).direction == pins::PinDirection::bidirectional; }
