@@ -150,10 +150,15 @@ void WaveFile::show(Signals& s, const Shown& now) {
 
 void WaveFile::see_begin(const segment::Sighting& s) { open_.push_back({s.sent.start, s.sender}); }
 
+/// A station that was unplugged while it sent is nobody at the end; it is still its pin that moved.
 void WaveFile::see(const segment::Sighting& s) {
-    const auto at = std::find_if(open_.begin(), open_.end(), [&](const Open& o) { return o.sender == s.sender && o.start == s.sent.start; });
-    if (at != open_.end()) open_.erase(at);
-    const std::size_t wire = s.sender < wire_of_.size() ? wire_of_[s.sender] : kNoWire;
+    segment::StationIndex sender = s.sender;
+    const auto same = [&](const Open& o) { return o.start == s.sent.start && (o.sender == s.sender || s.sender == segment::kNobody); };
+    if (const auto at = std::find_if(open_.begin(), open_.end(), same); at != open_.end()) {
+        sender = at->sender;
+        open_.erase(at);
+    }
+    const std::size_t wire = sender < wire_of_.size() ? wire_of_[sender] : kNoWire;
     trace::render(s.sent, [&](core::Ticks when, bool high) { drive(when, wire, high); });
 }
 

@@ -9,7 +9,6 @@ namespace {
 
 using namespace bench;
 using namespace core::literals;
-using chip::Level;
 
 Recipe at(fdl::BaudCode baud) {
     Recipe r;
@@ -31,7 +30,7 @@ struct Xcts {
     PinLevel level{};
 };
 
-Sending watch(Bench& b, Ticks until, std::vector<Xcts> script = {}) {
+Sending watch(Bench& b, Ticks until, const std::vector<Xcts>& script = {}) {
     Sending out;
     std::vector<core::TraceRecord> ring(4096);
     b.chip().trace().attach(ring);
