@@ -160,6 +160,32 @@ TEST_P(Checks, C016_XCTS_holds_the_first_character_back_but_not_RTS) {
     EXPECT_LE(b.last_answer().start, released + b.bit());
 }
 
+// proves: VPC3C 8.3-01
+TEST_P(Checks, whoever_sends_the_bits_may_hold_a_later_character_and_says_when_sending_is_over) {
+    Recipe s = recipe();
+    s.path = Path::telegrams;
+    Bench b{s, Stage::p0};
+    bench::Bench::ChipUnderTest& chip = b.chip();
+    b.tell(kFdlStatus);
+    fdl::Transmission answer;
+    while (!chip.take(answer)) chip.advance(chip.next());
+    chip.advance(answer.start + b.bits(11));
+    chip.hold();
+    chip.advance(answer.end() + b.bits(100));
+    EXPECT_EQ(chip.level(chip::Pin::rts), chip::Level::high) << "sending goes on";
+    std::vector<std::uint8_t> snapshot(bench::Bench::ChipUnderTest::snapshot_size());
+    ASSERT_TRUE(chip.save(snapshot));
+    ASSERT_EQ(chip.load(snapshot), core::ArchiveError::none);
+    const Ticks end = chip.now() + b.bits(55);
+    chip.sent(end);
+    chip.advance(end + 4_clk - Ticks{1});
+    EXPECT_EQ(chip.level(chip::Pin::rts), chip::Level::high);
+    chip.advance(end + 4_clk);
+    EXPECT_EQ(chip.level(chip::Pin::rts), chip::Level::low) << "the trail counts from the end that was told";
+    chip.hold();
+    EXPECT_EQ(b.ask(kFdlStatus), kFdlStatusOk) << "outside an answer there is nothing to hold";
+}
+
 TEST_P(Checks, C017_a_retry_is_answered_again_and_indicated_once) {
     Bench b{recipe(), Stage::p2};
     const unsigned user_wd = b.chip().user_wd_timer();
