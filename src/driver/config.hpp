@@ -139,6 +139,7 @@ struct Config {
 /// Why configure() refused. The *_too_long and *_space errors name the length that is at fault.
 enum class ConfigError : std::uint8_t {
     none,
+    no_chip,             ///< what stands at the address of the Status Register is none: a bus that nobody drives, a wrong base
     running,             ///< the chip is not Offline: go_offline() first
     ram_size,            ///< this chip has no such RAM
     ram_fault,           ///< the RAM test failed
@@ -172,6 +173,7 @@ enum class ConfigError : std::uint8_t {
 constexpr const char* name(ConfigError e) {
     switch (e) {
     case ConfigError::none: return "no error";
+    case ConfigError::no_chip: return "no chip answers at this address";
     case ConfigError::running: return "the chip is not Offline";
     case ConfigError::ram_size: return "the chip has no RAM of this size";
     case ConfigError::ram_fault: return "the RAM test failed";

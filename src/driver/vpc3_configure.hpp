@@ -6,6 +6,11 @@
 
 namespace dpchip::driver {
 
+/// Both states of the Status Register have codes 0 to 2; a bus that nobody drives reads FFH (5.2).
+constexpr bool is_status(std::uint8_t low) {
+    return ((low >> regmap::status::dp_state_lsb) & 3u) != 3u && ((low >> regmap::status::wd_state_lsb) & 3u) != 3u;
+}
+
 template <BusPort Bus, class App, std::size_t N, class D>
 ConfigError Vpc3<Bus, App, N, D>::configure(const Config& config) {
     const Layout layout = lay_out(config);
@@ -15,9 +20,10 @@ ConfigError Vpc3<Bus, App, N, D>::configure(const Config& config) {
     } else if (config.dpv1.any()) return ConfigError::no_dpv1;
     const BusMode before = config_.bus_mode;
     config_.bus_mode = config.bus_mode;
-    if ((read(ctl::status_reg_low) & regmap::status::passive_idle) != 0) {
+    const std::uint8_t status = read(ctl::status_reg_low);
+    if (!is_status(status) || (status & regmap::status::passive_idle) != 0) {
         config_.bus_mode = before;
-        return ConfigError::running;
+        return is_status(status) ? ConfigError::running : ConfigError::no_chip;
     }
     state_ = State::unconfigured;
     config_ = config;

@@ -43,8 +43,8 @@ Plan for_apc3(Plan plan) {
     plan.ram = driver::RamSize::bytes_1536;
     return plan;
 }
-/// The firmware sees no chip behind its addresses: a status of FFH is not that of one in Offline, or the RAM test fails.
-bool not_found(const Report& r) { return r.config == driver::ConfigError::running || r.config == driver::ConfigError::ram_fault; }
+/// The firmware sees no chip behind its addresses: no status can be FFH, or the RAM test fails.
+bool not_found(const Report& r) { return r.config == driver::ConfigError::no_chip || r.config == driver::ConfigError::ram_fault; }
 bool says(const std::vector<std::string>& all, std::string_view part) {
     return std::ranges::any_of(all, [&](const std::string& s) { return s.find(part) != std::string::npos; });
 }
@@ -264,7 +264,8 @@ std::vector<Fault> faults() {
         {"MODE open", without(board_hc16(), PinId::mode), "pin 23 (MODE): an input that nothing drives", [](const Report& r) { return says(r.findings, "floating_input at pin 23"); }},
         {"XREADY not wired", without(board_80c165(), PinId::xready_xdtack), "", [](const Report& r) { return r.never_ready != 0; }},
         {"XDTACK not wired", without(board_hc16(), PinId::xready_xdtack), "", [](const Report& r) { return r.never_ready != 0; }},
-        {"D0 not wired", without(board_80286(), PinId::db0), "pin 11 (DB0): the data bus goes both ways", not_found},
+        {"D0 not wired: bit 0 of the status is always 1", without(board_80286(), PinId::db0), "pin 11 (DB0): the data bus goes both ways",
+         [](const Report& r) { return r.config == driver::ConfigError::running; }},
         {"data bus in the wrong order", with(with(board_80c165(), both_ways("D1", PinId::db0)), both_ways("D0", PinId::db1)), "", not_heard},
         {"X/INT not wired: nobody serves the chip", without(board_80c165(), PinId::x_int), "", not_heard},
         {"RESET not wired", without(board_80c165(), PinId::reset), "pin 36 (RESET)", [](const Report& r) { return says(r.findings, "floating_input at pin 36"); }},

@@ -142,6 +142,10 @@ TEST_F(Driver, FindsABrokenRamCellAndARunningChip) {
     chip.broken_cell = 0;
     chip.value[0x04] = 0x01;
     EXPECT_EQ(drv.configure(station()), ConfigError::running);
+    for (const int nobody : {0xFF, 0x30, 0xC0, 0x31}) {
+        chip.value[0x04] = static_cast<std::uint8_t>(nobody);
+        EXPECT_EQ(drv.configure(station()), ConfigError::no_chip) << "codes 3 do not exist (5.2)";
+    }
     chip.value[0x04] = 0x00;
     EXPECT_EQ(drv.configure(station()), ConfigError::none);
 }
