@@ -181,6 +181,9 @@ void Segment::begin(std::uint8_t f) {
         Flight& other = flights_[order_[n]];
         if (&other != &flight && other.begun) collide(other, flight);
     }
+    if (announced_ != 0) [[unlikely]]
+        for (Tap& tap : taps_)
+            if (tap.announced) collide_announced(tap, flight);
     flight.begun = true;
     for (const ObserverRef& o : observers_) o.see_begin({flight.sent, flight.sender});
     StationSet carrier = heard_last_;
@@ -207,9 +210,22 @@ void Segment::collide(Flight& a, Flight& b) {
     plan(a);
 }
 
+/// What `tap` sends without anybody knowing what, and `f` spoil each other from now on.
+void Segment::collide_announced(Tap& tap, Flight& f) {
+    if (f.sent.end() <= now_) return;
+    ++counters_.collisions;
+    tap.hit_from = std::min(tap.hit_from, now_);
+    tap.hit_to = std::max(tap.hit_to, f.sent.end());
+    const bool direct_before = direct(f);
+    garble(f.sent, now_, f.sent.end());
+    if (direct_before) f.told.fill(1);
+    plan(f);
+}
+
 // ---- delivery ----------------------------------------------------------------------------------------------------
 
 bool Segment::busy() const {
+    if (announced_ != 0) return true;
     for (std::size_t n = 0; n < flying_; ++n)
         if (flights_[order_[n]].begun) return true;
     return false;
@@ -352,7 +368,47 @@ void Segment::finish(StationIndex sender) {
     advance(now_);
 }
 
+void Segment::announce(StationIndex sender) {
+    if (!attached(sender) || taps_[sender].announced) return;
+    Tap& mine = taps_[sender];
+    for (std::size_t n = 0; n < flying_; ++n)
+        if (Flight& f = flights_[order_[n]]; f.begun) collide_announced(mine, f);
+    for (Tap& other : taps_) {
+        if (!other.announced) continue;
+        ++counters_.collisions;
+        for (Tap* tap : {&mine, &other}) {
+            tap->hit_from = std::min(tap->hit_from, now_);
+            tap->hit_to = core::kNever;
+        }
+    }
+    mine.announced = true;
+    ++announced_;
+    mine.sends_from = now_;
+    mine.sends_to = core::kNever;
+    StationSet carrier = heard_last_;
+    carrier |= ears_;
+    carrier.remove(sender);
+    heard_last_ = {};
+    carrier.each([&](StationIndex i) { hear_carrier(i); });
+    replan();
+    advance(now_);
+}
+
 void Segment::inject(StationIndex sender, const Transmission& t) {
+    if (sender >= taps_.size() || !taps_[sender].announced) return hear_injected(sender, t);
+    Tap& tap = taps_[sender];
+    Transmission heard = t;
+    if (tap.hit_from < tap.hit_to) garble(heard, tap.hit_from, tap.hit_to);
+    tap.announced = false;
+    --announced_;
+    tap.sends_from = t.start;
+    tap.sends_to = t.end();
+    tap.hit_from = core::kNever;
+    tap.hit_to = {};
+    hear_injected(sender, heard);
+}
+
+void Segment::hear_injected(StationIndex sender, const Transmission& t) {
     DPCHIP_ASSERT(t.end() <= now_);
     ++counters_.transmissions;
     const Sighting sighting{t, sender};

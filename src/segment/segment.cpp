@@ -63,6 +63,7 @@ void Segment::detach(StationIndex i) {
     on_.remove(i);
     ears_.remove(i);
     heard_last_.remove(i);
+    if (taps_[i].announced) --announced_;
     taps_[i] = Tap{};
     schedule_.remove(i);
     for (Flight& f : flights_)

@@ -116,8 +116,13 @@ public:
     /// Characters nobody sent, from `at` (not before now()) on; faults may be empty. False when too much is going on.
     bool disturb(Ticks at, Ticks bit, std::span<const std::uint8_t> octets, std::span<const std::uint8_t> faults = {});
     /// Something station `sender` is known to have sent before now(): heard at once. For lines whose wire is elsewhere.
-    /// A `t` that is not exactly one good telegram must be damaged, with its faults filled.
+    /// A `t` that is not exactly one good telegram must be damaged, with its faults filled. Ends what announce() began.
     void inject(StationIndex sender, const fdl::Transmission& t);
+    /// Station `sender` begins to send now what is known only when it ends, for lines whose wire is elsewhere; inject() must
+    /// follow. Those who hear everything and those who may be about to answer are told. Whatever else is on the line until
+    /// then collides with it: that is spoilt from then on, since nobody knows how long this goes on, and this as long as
+    /// that lasted.
+    void announce(StationIndex sender);
     /// What `sender` is sending has left the line now, before its bit times are over: heard at once, and `sender` is told
     /// by sent(). For lines whose wire is elsewhere and faster. Nothing happens when it sends nothing.
     void finish(StationIndex sender);
@@ -134,6 +139,8 @@ private:
         Ticks position{};
         Ticks sends_from = core::kNever, sends_to{};  ///< its last transmission, as it was on the line
         Ticks heard_to{};                             ///< end of the last single character it heard
+        bool announced = false;                       ///< it sends what is not known yet
+        Ticks hit_from = core::kNever, hit_to{};      ///< while it did, others sent
         core::Clock clock{};
     };
     /// A transmission under way.
@@ -173,6 +180,8 @@ private:
     void begin_launched();
     void begin(std::uint8_t f);
     void collide(Flight& a, Flight& b);
+    void collide_announced(Tap& tap, Flight& f);
+    void hear_injected(StationIndex sender, const fdl::Transmission& t);
     Ticks delay(StationIndex from, StationIndex to) const;
     bool direct(const Flight& f) const { return !f.sent.damaged && !delayed_; }
 
@@ -196,6 +205,7 @@ private:
     std::array<StationIndex, 128> at_;  ///< station by address; kNobody, or kSeveral
     std::vector<Tap> taps_;
     bool delayed_ = false;              ///< some tap has a position
+    std::size_t announced_ = 0;         ///< taps that send what is not known yet
 
     std::array<std::uint8_t, kMaxFlights> order_{};  ///< flights under way, in the order they were launched
     std::size_t flying_ = 0;
