@@ -183,11 +183,26 @@ typedef struct dpchip_telegram {
     uint16_t length;
     uint8_t octets[255];   /* as they arrived */
 } dpchip_telegram;
-/* 1: telegrams of all stations are kept from now on; 0: no longer. */
+/* 1: telegrams of all stations are kept from now on, as they end; 3: also as they begin, for dpchip_line_begun; 0: no longer. */
 DPCHIP_API int dpchip_line_watch(dpchip_line *line, int on);
 /* Takes the oldest telegram that has ended. 1: one was taken; 0: there is none. 1024 are kept; when more come, the oldest
    are lost. */
 DPCHIP_API int dpchip_line_telegram(dpchip_line *line, dpchip_telegram *telegram);
+
+/* Takes the oldest telegram that has begun, as its sender means it: `end_ticks` is in the future, and what becomes of it on
+   its way dpchip_line_telegram tells. Telegrams of stations that have joined are left out. Otherwise as above. */
+DPCHIP_API int dpchip_line_begun(dpchip_line *line, dpchip_telegram *telegram);
+
+/* A station whose bits are on a wire of the caller's, as those of a package with pins are; sim: only. `baud`: the rate at which
+   it sends. Returns its number or a negative code. The line tells it nothing: see dpchip_line_begun. */
+DPCHIP_API int dpchip_line_join(dpchip_line *line, uint32_t baud);
+/* Now it begins to send, what will be known at the end: planned answers are given up, masters wait, and whatever is on the
+   line until dpchip_line_joined_sent, which must follow, is a collision. DPCHIP_E_STATE: it is sending already. */
+DPCHIP_API int dpchip_line_joined_begins(dpchip_line *line, int station);
+/* What it has sent, from `start_ticks` on, has ended by now; the others hear it at once. `faults`: NULL, or for each octet a
+   sum of DPCHIP_FAULT_*. What is not exactly one good telegram is damaged. */
+DPCHIP_API int dpchip_line_joined_sent(dpchip_line *line, int station, const void *bytes, const uint8_t *faults, size_t n,
+                                       int64_t start_ticks);
 
 /* Records all telegrams from now on into a pcapng file that Wireshark opens; NULL ends the recording. */
 DPCHIP_API int dpchip_line_record(dpchip_line *line, const char *path);

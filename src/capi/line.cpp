@@ -142,35 +142,51 @@ void Line::end_recording() {
     recording_.reset();
 }
 
-void Line::Watch::see(const segment::Sighting& s) {
+// ---- what was on the line ----------------------------------------------------------------------------------------
+
+void Line::Watch::keep(std::deque<dpchip_telegram>& in, const segment::Sighting& s) const {
     constexpr std::size_t kMaxTelegrams = 1024;
-    if (telegrams.size() == kMaxTelegrams) telegrams.pop_front();
-    dpchip_telegram& t = telegrams.emplace_back();
+    if (in.size() == kMaxTelegrams) in.pop_front();
+    dpchip_telegram& t = in.emplace_back();
     t.start_ticks = s.sent.start.n;
     t.end_ticks = s.sent.end().n;
-    t.own = s.sender == own ? 1 : 0;
+    t.own = s.sender == line.outside() ? 1 : 0;
     t.damaged = s.sent.damaged ? 1 : 0;
     t.length = s.sent.length;
     std::ranges::copy(s.sent.bytes(), t.octets);
 }
 
-void Line::watch(bool on) {
-    if (on == (watch_ != nullptr)) return;
-    if (on) {
-        watch_ = std::make_unique<Watch>(Watch{outside()});
-        segment().observe(*watch_);
-    } else {
-        segment().unobserve(watch_.get());
-        watch_.reset();
-    }
+void Line::Watch::see(const segment::Sighting& s) { keep(telegrams, s); }
+
+void Line::Watch::see_begin(const segment::Sighting& s) {
+    const bool joined = std::ranges::any_of(line.joined_, [&](const Joined& j) { return j.index == s.sender; });
+    if (beginnings && !joined) keep(begun, s);
 }
 
-std::optional<dpchip_telegram> Line::seen() {
-    if (watch_ == nullptr || watch_->telegrams.empty()) return std::nullopt;
-    const dpchip_telegram t = watch_->telegrams.front();
-    watch_->telegrams.pop_front();
+void Line::watch(bool ends, bool beginnings) {
+    if (!ends) {
+        if (watch_ != nullptr) segment().unobserve(watch_.get());
+        watch_.reset();
+        return;
+    }
+    if (watch_ == nullptr) {
+        watch_ = std::make_unique<Watch>(Watch{*this});
+        segment().observe(*watch_);
+    }
+    watch_->beginnings = beginnings;
+    if (!beginnings) watch_->begun.clear();
+}
+
+std::optional<dpchip_telegram> Line::oldest(std::deque<dpchip_telegram>& of) {
+    if (of.empty()) return std::nullopt;
+    const dpchip_telegram t = of.front();
+    of.pop_front();
     return t;
 }
+
+std::optional<dpchip_telegram> Line::seen() { return watch_ == nullptr ? std::nullopt : oldest(watch_->telegrams); }
+
+std::optional<dpchip_telegram> Line::begun() { return watch_ == nullptr ? std::nullopt : oldest(watch_->begun); }
 
 std::unique_ptr<Line> open(std::string_view uri, std::uint32_t baud) {
     if (uri == kSim || uri == "sim") return std::make_unique<SimLine>(rate(baud, kSimBaud));

@@ -50,10 +50,16 @@ public:
     void record(const std::string& file);
     void end_recording();
 
-    /// Keeps every telegram for dpchip_line_telegram.
-    void watch(bool on);
+    /// Keeps every telegram for dpchip_line_telegram, and for dpchip_line_begun as it begins.
+    void watch(bool ends, bool beginnings);
     /// The oldest one kept, or nothing.
     std::optional<dpchip_telegram> seen();
+    std::optional<dpchip_telegram> begun();
+
+    /// Stations whose bits are elsewhere. Codes as in the C API.
+    int join(fdl::BaudCode rate);
+    int joined_begins(int station);
+    int joined_sent(int station, std::span<const std::uint8_t> octets, const std::uint8_t* faults, Ticks start);
 
     std::vector<dpchip_chip*> chips;
 
@@ -69,10 +75,32 @@ private:
     };
     /// What was on the line, for dpchip_line_telegram.
     struct Watch {
-        segment::StationIndex own;
-        std::deque<dpchip_telegram> telegrams{};
+        const Line& line;
+        bool beginnings = false;
+        std::deque<dpchip_telegram> telegrams{}, begun{};
         void see(const segment::Sighting& s);
+        void see_begin(const segment::Sighting& s);
+        void keep(std::deque<dpchip_telegram>& in, const segment::Sighting& s) const;
     };
+    /// A station without ears or a mind of its own.
+    struct Joined {
+        segment::StationIndex index{};
+        Ticks bit{};
+        bool sending = false;
+
+        Ticks next() const { return core::kNever; }
+        void advance(Ticks) {}
+        void hear(const fdl::Transmission&) {}
+        void hear_character(const fdl::Character&) {}
+        void carrier(Ticks) {}
+        bool take(fdl::Transmission&) { return false; }
+        bool hears_all() const { return false; }
+        std::uint8_t address() const { return segment::kNoAddress; }
+    };
+    Joined* joined(int station);
+    static std::optional<dpchip_telegram> oldest(std::deque<dpchip_telegram>& of);
+
+    std::deque<Joined> joined_;  ///< the segment points at them
     std::unique_ptr<Recording> recording_;
     std::unique_ptr<Watch> watch_;
 };

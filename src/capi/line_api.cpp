@@ -49,6 +49,20 @@ void put_on(dpchip::capi::Line& line, dpchip_chip& chip) {
     line.chips.push_back(&chip);
 }
 
+/// Hands the telegram over that `next` gives, as far as the caller's structure reaches.
+template <class Next>
+int take_telegram(dpchip_line* line, dpchip_telegram* telegram, Next next) {
+    if (line == nullptr || telegram == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    if (telegram->size < sizeof(size_t)) return fail(DPCHIP_E_ARGUMENT, "dpchip_telegram.size is not set");
+    return guarded([&] {
+        auto seen = next();
+        if (!seen) return 0;
+        seen->size = telegram->size;
+        std::memcpy(telegram, &*seen, std::min(telegram->size, sizeof *seen));
+        return 1;
+    });
+}
+
 void take_off(dpchip::capi::Line& line, dpchip_chip& chip) {
     chip.attachment.advance(std::max(line.now(), line.segment().now()));
     line.segment().detach(chip.index);
@@ -81,7 +95,7 @@ void dpchip_line_close(dpchip_line* line) {
     guarded([&] {
         while (!line->line->chips.empty()) take_off(*line->line, *line->line->chips.back());
         line->line->end_recording();
-        line->line->watch(false);
+        line->line->watch(false, false);
         return 0;
     });
     delete line;
@@ -151,21 +165,35 @@ int dpchip_line_post(dpchip_line* line, const void* bytes, size_t n, int64_t at_
 int dpchip_line_watch(dpchip_line* line, int on) {
     if (line == nullptr) return null_line();
     return guarded([&] {
-        line->line->watch(on != 0);
+        line->line->watch(on != 0, (on & 2) != 0);
         return DPCHIP_OK;
     });
 }
 
 int dpchip_line_telegram(dpchip_line* line, dpchip_telegram* telegram) {
-    if (line == nullptr || telegram == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
-    if (telegram->size < sizeof(size_t)) return fail(DPCHIP_E_ARGUMENT, "dpchip_telegram.size is not set");
-    return guarded([&] {
-        auto seen = line->line->seen();
-        if (!seen) return 0;
-        seen->size = telegram->size;
-        std::memcpy(telegram, &*seen, std::min(telegram->size, sizeof *seen));
-        return 1;
-    });
+    return take_telegram(line, telegram, [&] { return line->line->seen(); });
+}
+
+int dpchip_line_begun(dpchip_line* line, dpchip_telegram* telegram) {
+    return take_telegram(line, telegram, [&] { return line->line->begun(); });
+}
+
+int dpchip_line_join(dpchip_line* line, uint32_t baud) {
+    if (line == nullptr) return null_line();
+    const auto rate = dpchip::fdl::baud_from_bits_per_s(baud);
+    if (!rate) return fail(DPCHIP_E_ARGUMENT, std::to_string(baud) + " bit/s is none of the ten PROFIBUS rates (9600 .. 12000000)");
+    return guarded([&] { return line->line->join(*rate); });
+}
+
+int dpchip_line_joined_begins(dpchip_line* line, int station) {
+    if (line == nullptr) return null_line();
+    return guarded([&] { return line->line->joined_begins(station); });
+}
+
+int dpchip_line_joined_sent(dpchip_line* line, int station, const void* bytes, const uint8_t* faults, size_t n, int64_t start_ticks) {
+    if (line == nullptr || bytes == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    if (n < 1 || n > dpchip::fdl::kMaxTelegram) return fail(DPCHIP_E_ARGUMENT, "a telegram has 1 to 255 octets");
+    return guarded([&] { return line->line->joined_sent(station, {static_cast<const std::uint8_t*>(bytes), n}, faults, Ticks{start_ticks}); });
 }
 
 int dpchip_line_record(dpchip_line* line, const char* path) {
