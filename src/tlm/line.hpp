@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An RS-485 line between SystemC modules: chips and one master exchange telegrams in simulated time. Bus timing, collisions
+// An RS-485 line between SystemC modules: chips, packages behind transceivers and one master exchange telegrams in simulated time. Bus timing, collisions
 // and who hears what are the model's (a "sim:" line of dpchip.h); this channel moves it with the kernel.
 //
 // The line is at most as far as the kernel, unless a chip is allowed to run ahead (Synchronisation::run_ahead): then it is
@@ -20,7 +20,7 @@
 
 namespace dpchip::tlm {
 
-class Line : public sc_core::sc_module, public LineMasterIf, public LineChipIf {
+class Line : public sc_core::sc_module, public LineMasterIf, public LineChipIf, public LineWireIf {
 public:
     /// Every telegram as it ends, for monitors and traces.
     ::tlm::tlm_analysis_port<Telegram> telegrams{"telegrams"};
@@ -40,6 +40,11 @@ public:
     void advance(Ticks to) override;
     void touched() override;
 
+    int join(LineWire& wire, std::uint32_t baud) override;
+    void drive(int station, bool level) override;
+    void begins(int station) override;
+    void sent(int station, const Octets& octets, const Octets& faults, Ticks start) override;
+
     /// The line of the C API, for what this class does not offer: dpchip_line_record and the like. Do not move its time.
     dpchip_line* handle() { return line_.get(); }
 
@@ -48,15 +53,29 @@ private:
         void operator()(dpchip_line* line) const { dpchip_line_close(line); }
     };
 
+    struct Wire {
+        int station;
+        LineWire* wire;
+        bool level = true;
+    };
+    struct Begun {
+        sc_core::sc_time at;
+        Octets octets;
+        Ticks start, bit;
+    };
+
     void end_of_elaboration() override;
     void step();
     void collect();
     void deliver();
     void plan();
     bool post(const Octets& octets, Ticks at);
+    void check(int code);
 
     std::unique_ptr<dpchip_line, Close> line_;
     std::vector<LineStation*> stations_;
+    std::vector<Wire> wires_;
+    std::deque<Begun> begun_;     ///< for the wires, not yet at the kernel's time
     std::deque<Telegram> seen_;   ///< ended on the line, not yet at the kernel's time
     std::deque<Telegram> inbox_;  ///< of the master
     sc_core::sc_event wake_{"wake"}, sent_{"sent"}, received_{"received"};

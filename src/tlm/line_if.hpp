@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two faces of a telegram-level line: a master's, and that of the chips on it.
+// The faces of a telegram-level line: a master's, that of the chips on it, and that of transceivers, whose stations have bits.
 #pragma once
 
 #include <cstdint>
@@ -66,6 +66,31 @@ public:
     virtual void advance(Ticks to) = 0;
     /// The line has been moved or a chip accessed: what came of it is handed on, and what comes next is planned.
     virtual void touched() = 0;
+};
+
+/// Told by the line what others put on it, at the kernel's time.
+class LineWire {
+public:
+    /// The telegram of a master or a chip begins, with that bit time in ticks. What a collision makes of it is not known.
+    virtual void telegram_begins(const Octets& octets, Ticks start, Ticks bit) = 0;
+    /// The wires of the other transceivers are at this level together; 1 is idle.
+    virtual void others_drive(bool level) = 0;
+
+protected:
+    ~LineWire() = default;
+};
+
+/// For transceivers. One that has begun must end: meanwhile it collides with everybody.
+class LineWireIf : public virtual sc_core::sc_interface {
+public:
+    /// Puts a station on the line that sends at `baud`, at the end of elaboration; returns its number.
+    virtual int join(LineWire& wire, std::uint32_t baud) = 0;
+    /// What the others with wires see from now on.
+    virtual void drive(int station, bool level) = 0;
+    /// It begins to send now; nobody knows what.
+    virtual void begins(int station) = 0;
+    /// What it has sent from tick `start` on has ended now. `faults`, sums of DPCHIP_FAULT_*, one for each octet.
+    virtual void sent(int station, const Octets& octets, const Octets& faults, Ticks start) = 0;
 };
 
 }  // namespace dpchip::tlm

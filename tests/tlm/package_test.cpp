@@ -5,12 +5,9 @@
 
 #include <algorithm>
 
-#include "support/startup_firmware.hpp"
-#include "tlm/pin_board.hpp"
+#include "tlm/startup_station.hpp"
 
 namespace dpchip::tlm::test {
-
-namespace startup = dpchip::test::startup;
 
 namespace {
 
@@ -249,25 +246,8 @@ TEST(TlmPackage, a_fatal_violation_stops_the_part_and_is_one_error) {
 }
 
 /// The start-up scenario through strobes and bits.
-struct PinPlatform {
-    PinPlatform() : board{"board", settings()}, firmware{{this, &PinPlatform::read, &PinPlatform::write}, startup::Service::interrupt} {
-        board.program = [this] {
-            board.power_up();
-            EXPECT_TRUE(firmware.begin());
-            for (;;) {
-                if (board.x_int.read() == sc_dt::SC_LOGIC_1) sc_core::wait(board.x_int.negedge_event());
-                firmware.on_interrupt();
-            }
-        };
-    }
-    static PackageSettings settings() {
-        PackageSettings s;
-        s.variant = startup::kVariant;
-        for (const auto& [name, value] : startup::kOptions) s.options.emplace_back(name, value);
-        return s;
-    }
-    static std::uint8_t read(void* self, std::uint16_t address) { return static_cast<PinPlatform*>(self)->board.read(address); }
-    static void write(void* self, std::uint16_t address, std::uint8_t value) { static_cast<PinPlatform*>(self)->board.write(address, value); }
+struct PinPlatform : PinStation {
+    PinPlatform() : PinStation{"board"} {}
 
     startup::Result run() {
         sc_core::sc_start(to_sc_time(startup::kEnd) + sc_time::from_value(1));
@@ -279,8 +259,6 @@ struct PinPlatform {
         return result;
     }
 
-    PinBoard board;
-    startup::Firmware firmware;
     Actor master{"master", [this] {
         for (const startup::Request& r : startup::requests()) send_bits(board.rxd, r.at, kBit, r.octets);
     }};

@@ -31,6 +31,7 @@ PinBoard::PinBoard(const sc_core::sc_module_name& name, const PackageSettings& s
     package.rxd(rxd);
     package.txd(txd);
     package.rts(rts);
+    package.xcts(xcts);
     SC_THREAD(run);
 }
 

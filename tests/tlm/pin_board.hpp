@@ -39,6 +39,7 @@ struct PinBoard : sc_core::sc_module {
     Wire xint_mot, mode;
     Wire xready{"xready"}, x_int{"x_int", sc_dt::SC_LOGIC_1}, xdataexch{"xdataexch", sc_dt::SC_LOGIC_1};
     Wire rxd{"rxd", sc_dt::SC_LOGIC_1}, txd{"txd", sc_dt::SC_LOGIC_1}, rts{"rts", sc_dt::SC_LOGIC_0};
+    Wire xcts{"xcts", sc_dt::SC_LOGIC_0};
     Package package;
     std::function<void()> program;
 

@@ -3,48 +3,26 @@
 // temporal decoupling.
 #include <gtest/gtest.h>
 
-#include "support/startup_firmware.hpp"
-#include "tlm/simulation.hpp"
+#include "tlm/startup_station.hpp"
 
 namespace dpchip::tlm::test {
-
-namespace startup = dpchip::test::startup;
 
 namespace {
 
 ChipSettings settings(const sc_time& access_time) {
-    ChipSettings s;
-    s.variant = startup::kVariant;
+    auto s = startup_settings<ChipSettings>();
     s.access_time = access_time;
-    for (const auto& [name, value] : startup::kOptions) s.options.emplace_back(name, value);
     return s;
 }
 
 /// The scenario on a platform: processor, chip, line, master.
 struct Platform {
-    Platform(startup::Service service, const sc_time& access_time)
-        : board{"board", settings(access_time), &line},
-          master{"master", [this] { speak(); }},
-          firmware{{this, &Platform::read, &Platform::write}, service} {}
-
-    static std::uint8_t read(void* self, std::uint16_t address) { return static_cast<Platform*>(self)->board.read(address); }
-    static void write(void* self, std::uint16_t address, std::uint8_t value) { static_cast<Platform*>(self)->board.write(address, value); }
+    Platform(startup::Service service, const sc_time& access_time) : station{"board", settings(access_time), line, service} {}
 
     void speak() {
         for (const startup::Request& request : startup::requests()) {
             until(to_sc_time(request.at));
             EXPECT_TRUE(line.send_now(request.octets));
-        }
-    }
-    /// The processor that waits for X/INT.
-    void serve() {
-        EXPECT_TRUE(firmware.begin());
-        for (;;) {
-            sc_core::wait(board.delay);
-            board.delay = sc_core::SC_ZERO_TIME;
-            if (board.x_int.read()) sc_core::wait(board.x_int.negedge_event());
-            firmware.on_interrupt();
-            if (board.delay == sc_core::SC_ZERO_TIME) sc_core::wait(board.x_int.posedge_event());
         }
     }
     /// The processor that computes ahead of the kernel, by up to `quantum`, and polls every kPollPeriod of its own time.
@@ -72,9 +50,10 @@ struct Platform {
 
     Line line{"line", startup::kBaud};
     Monitor monitor{"monitor", line};
-    Board board;
-    Actor master;
-    startup::Firmware firmware;
+    SocketStation station;
+    Board& board = station.board;
+    startup::Firmware& firmware = station.firmware;
+    Actor master{"master", [this] { speak(); }};
 };
 
 TEST(TlmStartup, the_reference_reaches_data_exchange_and_answers_everything_but_the_first_telegram) {
@@ -92,7 +71,6 @@ TEST(TlmStartup, the_reference_reaches_data_exchange_and_answers_everything_but_
 TEST(TlmStartup, registers_RAM_telegrams_and_their_ticks_are_those_of_telegram_level) {
     simulate([] {
         Platform p{startup::Service::interrupt, sc_core::SC_ZERO_TIME};
-        p.board.program = [&] { p.serve(); };
         EXPECT_EQ(difference(p.run(), startup::telegram_level(startup::Service::interrupt)), "");
         EXPECT_TRUE(p.firmware.exchanging());
     });
@@ -101,7 +79,6 @@ TEST(TlmStartup, registers_RAM_telegrams_and_their_ticks_are_those_of_telegram_l
 TEST(TlmStartup, accesses_that_take_time_change_no_register_and_no_telegram) {
     simulate([] {
         Platform p{startup::Service::interrupt, ns(125)};
-        p.board.program = [&] { p.serve(); };
         EXPECT_EQ(difference(p.run().without_times(), startup::telegram_level(startup::Service::interrupt).without_times()), "");
     });
 }
