@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Testing firmware without hardware: virtual time, and the test plays the master. */
+/* Testing firmware without hardware: virtual time, and the test plays the master. An argument is a VCD file to draw into. */
 #include <stdio.h>
 #include <string.h>
 
@@ -33,13 +33,14 @@ static int tell(const char *request, size_t n, const char *expected, size_t m) {
 }
 #define TELL(request, expected) tell(request, sizeof request - 1, expected, sizeof expected - 1)
 
-int main(void) {
+int main(int argc, char **argv) {
     int good = 1;
     chip = dpchip_chip_create("vpc3+c");
     line = dpchip_line_open("sim:", 1500000);
     dpchip_chip_set_option(chip, "baud_probe_ms", "1");
     dpchip_line_attach(line, chip);
     firmware_init(8, 0x4711);
+    if (argc > 1) good &= dpchip_line_waves(line, argv[1], NULL) == DPCHIP_OK;
     live(3500000); /* the search has come to 1.5 Mbit/s; the telegram that proves it is not answered */
     good &= TELL("\x10\x08\x02\x49\x53\x16", "");
     good &= TELL("\x10\x08\x02\x49\x53\x16", "\x10\x02\x08\x00\x0A\x16");

@@ -24,8 +24,9 @@ MAY_INCLUDE = {
     "slave": "core regmap fdl dp gsd driver chip",
     "trace": "core regmap fdl dp gsd",
     "live": "core fdl segment trace",
-    "capi": "core regmap fdl chip pins segment live trace",
-    "cli": "core regmap fdl dp gsd chip pins segment master driver slave trace live",
+    "waves": "core regmap fdl chip segment trace",
+    "capi": "core regmap fdl chip pins segment live trace waves",
+    "cli": "core regmap fdl dp gsd chip pins segment master driver slave trace live waves",
     "tlm": "",
 }
 MAY_INCLUDE = {layer: set(others.split()) for layer, others in MAY_INCLUDE.items()}
@@ -66,7 +67,7 @@ CXX20 = set(
 NEVER = {
     **{layer: CLOCKS_AND_THREADS | INPUT_AND_OUTPUT | HEAP for layer in "core regmap fdl dp chip driver pins".split()},
     **{layer: CLOCKS_AND_THREADS | INPUT_AND_OUTPUT for layer in "segment master slave".split()},
-    **{layer: CLOCKS_AND_THREADS for layer in "gsd trace".split()},
+    **{layer: CLOCKS_AND_THREADS for layer in "gsd trace waves".split()},
     "tlm": CXX20 | CLOCKS_AND_THREADS,
 }
 

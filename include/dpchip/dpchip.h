@@ -107,6 +107,8 @@ DPCHIP_API int dpchip_chip_run_ticks(dpchip_chip *chip, int64_t ticks);
    Example: "baud_probe_ms", "1" shortens the baud rate search. */
 DPCHIP_API int dpchip_chip_set_option(dpchip_chip *chip, const char *name, const char *text);
 DPCHIP_API int dpchip_chip_set_bus_mode(dpchip_chip *chip, int mode);
+/* What waveforms call the chip: up to 100 letters, digits and underscores; "": what dpchip_line_waves makes up. */
+DPCHIP_API int dpchip_chip_set_name(dpchip_chip *chip, const char *name);
 /* How long one access takes; 0 .. 1000000 ns. */
 DPCHIP_API int dpchip_chip_set_access_time(dpchip_chip *chip, int64_t nanoseconds);
 /* Pin XCTS: 0 lets the chip send, 1 holds it back. */
@@ -206,6 +208,20 @@ DPCHIP_API int dpchip_line_joined_sent(dpchip_line *line, int station, const voi
 
 /* Records all telegrams from now on into a pcapng file that Wireshark opens; NULL ends the recording. */
 DPCHIP_API int dpchip_line_record(dpchip_line *line, const char *path);
+
+/* Draws waveforms from now on into a VCD file, which GTKWave, Surfer and PulseView open; NULL ends it, as closing the line
+   does. sim: lines only; on others DPCHIP_E_STATE. Signals, as SCOPE.NAME: line.level, the test's master.TXD, and for each
+   chip that is on the line when this is called TXD, RXD, RTS, X_INT, XDATAEXCH_SYNC, Diag_Flag, WD_State, DP_State,
+   Baud_Rate, Diag_Master_Add, the buffer state machines (Dout_Buffer_SM) and the interrupt requests (IRR.New_Prm_Data).
+   Of a chip that comes later only the bits in line.level and RXD are drawn, and one that leaves is unknown until it is back.
+   The scope of a chip is its name; without one, station_8 when it has address 8, chip_2 when it has none yet and is the
+   second on the line. `signals`: patterns with * and ?, with commas in between ("line.*,*.X_INT"); NULL: all.
+   DPCHIP_E_NAME: a pattern fits nothing, the words list all signals, and no file is written. DPCHIP_E_FILE: the file cannot
+   be written; with NULL, not all of it was (the disk is full). DPCHIP_E_STATE: one is being drawn already. */
+DPCHIP_API int dpchip_line_waves(dpchip_line *line, const char *path, const char *signals);
+/* Options of the line by name: "waves_timescale" is the unit of times in waveforms that begin later: 1, 10 or 100 and fs, ps,
+   ns, us, ms or s; "1ps" at first. Every time is rounded by itself. */
+DPCHIP_API int dpchip_line_set_option(dpchip_line *line, const char *name, const char *text);
 
 /* ---- a line of your own ----------------------------------------------------------------------------------------- */
 

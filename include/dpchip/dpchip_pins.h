@@ -60,7 +60,8 @@ DPCHIP_API int dpchip_pins_direction(int pin);
      "fatal" true|false         a timing violation stops the part: every later call that moves it is DPCHIP_E_VIOLATION
      "txd_pull_up" true|false   the board has the pull-up that TXD needs: it reads 1 where the chip leaves it Z
      "check_timing" true|false  bus timing is checked
-     "line" pins|none           none: RXD is ignored and TXD stays Z */
+     "line" pins|none           none: RXD is ignored and TXD stays Z
+     "waves_timescale" 1ps      the unit of times in waveforms that begin later, as in dpchip_line_set_option() */
 DPCHIP_API int dpchip_pins_set_option(dpchip_pins *part, const char *name, const char *text);
 
 /* ---- pins and time ---------------------------------------------------------------------------------------------- */
@@ -80,6 +81,12 @@ DPCHIP_API int dpchip_pins_advance(dpchip_pins *part, int64_t ticks);
 DPCHIP_API int dpchip_pins_next_edge(dpchip_pins *part, int64_t *ticks, int *pin, int *level);
 /* Whether edges of an output are queued. All are at first, CLKOUT2/4 excepted. */
 DPCHIP_API int dpchip_pins_watch(dpchip_pins *part, int pin, int on);
+
+/* Draws all pins but the supplies as waveforms from now on, into a VCD file with a signal for each (XCS_AB11, X_INT); NULL ends
+   it, as dpchip_pins_destroy() does. CLKOUT2/4 is drawn while it is watched, everything else always, and CLK where
+   dpchip_pins_clock_edge() drives it. DPCHIP_E_FILE: the file cannot be written; with NULL, not all of it was (the disk is
+   full). DPCHIP_E_STATE: one is being drawn already. */
+DPCHIP_API int dpchip_pins_waves(dpchip_pins *part, const char *path);
 
 /* CLK: rising edges lie at `ticks` plus multiples of 1250; 0 .. 1249, 0 at first. */
 DPCHIP_API int dpchip_pins_set_clock_phase(dpchip_pins *part, int64_t ticks);

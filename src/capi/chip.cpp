@@ -2,6 +2,8 @@
 // dpchip_chip_*: the chip behind the C API.
 #include "chip.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -44,6 +46,11 @@ std::int32_t output_number(Pin pin) {
 
 }  // namespace
 
+std::uint64_t dpchip_chip::next_serial() {
+    static std::atomic<std::uint64_t> made{0};
+    return ++made;
+}
+
 void dpchip_chip::watch(bool on) {
     drain_edges();
     watched = on;
@@ -75,7 +82,9 @@ void dpchip_chip::before_access(Ticks duration) {
 
 void dpchip_chip::after_access() {
     drain_edges();
-    if (line != nullptr) line->segment().touch(index);
+    if (line == nullptr) return;
+    line->segment().touch(index);
+    line->look();
 }
 
 namespace {
@@ -99,6 +108,7 @@ void dpchip_chip_destroy(dpchip_chip* chip) {
         auto& on_line = chip->line->chips;
         std::erase(on_line, chip);
         chip->line->segment().detach(chip->index);
+        chip->line->look();
     }
     delete chip;
 }
@@ -211,6 +221,18 @@ int dpchip_chip_set_xcts(dpchip_chip* chip, int level) {
         chip->model.set_xcts(level != 0 ? dpchip::chip::Level::high : dpchip::chip::Level::low);
         chip->after_access();
         return DPCHIP_OK;
+    });
+}
+
+int dpchip_chip_set_name(dpchip_chip* chip, const char* name) {
+    if (chip == nullptr || name == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    return guarded([&] {
+        const std::string wanted{name};
+        const auto plain = [](char c) { return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; };
+        if (wanted.size() > 100 || !std::all_of(wanted.begin(), wanted.end(), plain))
+            return fail(DPCHIP_E_ARGUMENT, "a name has up to 100 letters, digits and underscores");
+        chip->name = wanted;
+        return static_cast<int>(DPCHIP_OK);
     });
 }
 

@@ -2,7 +2,9 @@
 // What stands behind a dpchip_chip: the model, and its place on a line.
 #pragma once
 
+#include <cstdint>
 #include <deque>
+#include <string>
 
 #include <dpchip/chip/chip.hpp>
 #include <dpchip/dpchip.h>
@@ -51,13 +53,15 @@ private:
 }  // namespace dpchip::capi
 
 struct dpchip_chip {
-    explicit dpchip_chip(dpchip::regmap::Variant variant) : model{variant}, attachment{model} { watch(false); }
+    explicit dpchip_chip(dpchip::regmap::Variant variant) : model{variant}, attachment{model}, serial{next_serial()} { watch(false); }
     dpchip_chip(const dpchip_chip&) = delete;
     dpchip_chip& operator=(const dpchip_chip&) = delete;
 
     dpchip::capi::Model model;
     dpchip::capi::Attachment attachment;
     dpchip::capi::Line* line = nullptr;
+    const std::uint64_t serial;     ///< no other chip ever has it
+    std::string name;               ///< as the caller calls it; empty: it has none
     dpchip::segment::StationIndex index{};
     dpchip::core::Ticks access_time = dpchip::core::nanoseconds(125);
     bool x_int_rose = false;
@@ -72,4 +76,7 @@ struct dpchip_chip {
     void after_access();
     /// Empties the model's queue of edges: notes rising X/INT, keeps edges for who watches.
     void drain_edges();
+
+private:
+    static std::uint64_t next_serial();
 };

@@ -34,6 +34,7 @@ int Line::joined_begins(int station) {
     if (j == nullptr) return DPCHIP_E_ARGUMENT;
     if (j->sending) return fail(DPCHIP_E_STATE, "the station is sending already");
     j->sending = true;
+    j->since = now();
     segment().announce(j->index);
     segment().settle();
     return DPCHIP_OK;

@@ -11,6 +11,7 @@
 
 #include "chip.hpp"
 #include "error.hpp"
+#include "line_waves.hpp"
 
 namespace dpchip::capi {
 
@@ -35,20 +36,23 @@ public:
 
     Ticks run(Ticks duration) override {
         const Ticks from = segment_.now();
-        segment_.run_until([this] { return x_int_rose(); }, duration);
+        segment_.run_until([this] { return look(), x_int_rose(); }, duration);
         return segment_.now() - from;
     }
-    void spend(Ticks duration) override { segment_.run(duration); }
+    void spend(Ticks duration) override {
+        if (!drawn()) return segment_.run(duration);
+        segment_.run_until([this] { return look(), false; }, duration);
+    }
 
     int send(std::span<const std::uint8_t> octets) override {
         if (!port_.send(octets)) return fail(DPCHIP_E_STATE, "the octets before are still on their way");
         segment_.touch(port_index_);
-        segment_.run_until([this] { return !port_.sending(segment_.now()); }, core::kNever - segment_.now());
+        segment_.run_until([this] { return look(), !port_.sending(segment_.now()); }, core::kNever - segment_.now());
         segment_.settle();
         return DPCHIP_OK;
     }
     int receive(std::span<std::uint8_t> into, Ticks timeout) override {
-        if (!segment_.run_until([this] { return port_.pending(); }, timeout)) return 0;
+        if (!segment_.run_until([this] { return look(), port_.pending(); }, timeout)) return 0;
         const auto t = port_.receive();
         std::copy_n(t.octets.begin(), std::min<std::size_t>(t.length, into.size()), into.begin());
         segment_.settle();
@@ -112,6 +116,9 @@ private:
 };
 
 }  // namespace
+
+Line::Line() = default;
+Line::~Line() = default;
 
 bool Line::x_int_rose() {
     bool rose = false;

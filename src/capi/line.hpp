@@ -15,15 +15,17 @@
 #include <dpchip/fdl/baud.hpp>
 #include <dpchip/live/recorder.hpp>
 #include <dpchip/segment/segment.hpp>
+#include <dpchip/trace/vcd_writer.hpp>
 
 namespace dpchip::capi {
 
 using core::Ticks;
+class LineWaves;
 
 class Line {
 public:
-    virtual ~Line() = default;
-    Line() = default;
+    Line();
+    virtual ~Line();
     Line(const Line&) = delete;
     Line& operator=(const Line&) = delete;
 
@@ -50,6 +52,15 @@ public:
     void record(const std::string& file);
     void end_recording();
 
+    /// Waveforms of the line and the chips that are on it now. Codes as in the C API.
+    int draw(const std::string& file, std::string_view signals);
+    int end_drawing();
+    int set_option(std::string_view name, const std::string& text);
+    /// After anything that may have changed something; nothing is drawn: nothing is done.
+    void look() {
+        if (waves_ != nullptr) look_at_waves();
+    }
+
     /// Keeps every telegram for dpchip_line_telegram, and for dpchip_line_begun as it begins.
     void watch(bool ends, bool beginnings);
     /// The oldest one kept, or nothing.
@@ -64,6 +75,8 @@ public:
     std::vector<dpchip_chip*> chips;
 
 protected:
+    /// Whether every event is to be looked at.
+    bool drawn() const { return waves_ != nullptr; }
     /// True when the X/INT of a chip has gone active since the last time this was asked.
     bool x_int_rose();
 
@@ -87,6 +100,7 @@ private:
         segment::StationIndex index{};
         Ticks bit{};
         bool sending = false;
+        Ticks since{};  ///< sending: no earlier
 
         Ticks next() const { return core::kNever; }
         void advance(Ticks) {}
@@ -97,12 +111,15 @@ private:
         bool hears_all() const { return false; }
         std::uint8_t address() const { return segment::kNoAddress; }
     };
+    void look_at_waves();
     Joined* joined(int station);
     static std::optional<dpchip_telegram> oldest(std::deque<dpchip_telegram>& of);
 
     std::deque<Joined> joined_;  ///< the segment points at them
     std::unique_ptr<Recording> recording_;
     std::unique_ptr<Watch> watch_;
+    trace::VcdTimescale timescale_{};
+    std::unique_ptr<LineWaves> waves_;
 };
 
 /// Throws std::invalid_argument or live::LineError in words. baud 0: the default.

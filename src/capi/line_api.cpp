@@ -47,6 +47,7 @@ void put_on(dpchip::capi::Line& line, dpchip_chip& chip) {
     chip.index = *index;
     chip.line = &line;
     line.chips.push_back(&chip);
+    line.look();
 }
 
 /// Hands the telegram over that `next` gives, as far as the caller's structure reaches.
@@ -68,6 +69,7 @@ void take_off(dpchip::capi::Line& line, dpchip_chip& chip) {
     line.segment().detach(chip.index);
     std::erase(line.chips, &chip);
     chip.line = nullptr;
+    line.look();
 }
 
 }  // namespace
@@ -93,6 +95,7 @@ dpchip_line* dpchip_line_open(const char* uri, uint32_t baud) {
 void dpchip_line_close(dpchip_line* line) {
     if (line == nullptr) return;
     guarded([&] {
+        line->line->end_drawing();
         while (!line->line->chips.empty()) take_off(*line->line, *line->line->chips.back());
         line->line->end_recording();
         line->line->watch(false, false);
@@ -207,4 +210,14 @@ int dpchip_line_record(dpchip_line* line, const char* path) {
             return fail(DPCHIP_E_FILE, e.what());
         }
     });
+}
+
+int dpchip_line_waves(dpchip_line* line, const char* path, const char* signals) {
+    if (line == nullptr) return null_line();
+    return guarded([&] { return path == nullptr ? line->line->end_drawing() : line->line->draw(path, signals == nullptr ? "" : signals); });
+}
+
+int dpchip_line_set_option(dpchip_line* line, const char* name, const char* text) {
+    if (line == nullptr || name == nullptr || text == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
+    return guarded([&] { return line->line->set_option(name, text); });
 }

@@ -14,6 +14,7 @@
 
 #include "error.hpp"
 #include "model.hpp"
+#include "pin_waves.hpp"
 
 using dpchip::capi::fail;
 using dpchip::capi::guarded;
@@ -26,11 +27,28 @@ struct dpchip_pins {
     dpchip_pins(regmap::Variant variant, regmap::Supply supply) : package{variant, supply} {}
 
     void drain_edges() {
-        while (!package.edges().empty()) edges.push_back(package.edges().pop());
+        while (!package.edges().empty()) {
+            const pins::PinEdge edge = package.edges().pop();
+            if (waves) waves->edge(edge, package);
+            if ((wanted >> static_cast<unsigned>(edge.pin) & 1u) != 0) edges.push_back(edge);
+        }
+        if (waves) waves->settle(package.now());
+    }
+    /// Whether the package queues a pin's edges: who asks for them, or who draws.
+    void watch(pins::PinId pin) {
+        const bool queued = (wanted >> static_cast<unsigned>(pin) & 1u) != 0;
+        package.watch(pin, queued || (waves && pin != pins::PinId::clkout));
+    }
+    void watch_all() {
+        for (const pins::PinInfo& p : pins::kPinTable)
+            if (pins::is_output(p.id)) watch(p.id);
     }
 
     pins::Package<> package;
     std::deque<pins::PinEdge> edges;
+    std::uint64_t wanted = ~(std::uint64_t{1} << static_cast<unsigned>(pins::PinId::clkout));  ///< bit n: the caller wants edges of pin n
+    dpchip::trace::VcdTimescale timescale{};
+    std::unique_ptr<dpchip::capi::PinWaves> waves;
 };
 
 static_assert(DPCHIP_PIN_AB0 == static_cast<int>(pins::PinId::ab0) && DPCHIP_PIN_TXD == static_cast<int>(pins::PinId::txd));
@@ -57,13 +75,19 @@ bool supply_of(int millivolts, regmap::Supply& supply) {
 }
 
 /// The package's own options; -1: it has none of that name, 1: taken, 0: not a value.
-int set_package_option(pins::Package<>& package, std::string_view name, std::string_view text) {
+int set_package_option(dpchip_pins& part, std::string_view name, std::string_view text) {
+    auto& package = part.package;
     pins::PackageOptions o = package.options();
     if (name == "line") {
         if (text != "pins" && text != "none") return 0;
         o.line = text == "pins" ? pins::LineSide::pins : pins::LineSide::telegrams;
         package.set_options(o);
         return 1;
+    }
+    if (name == "waves_timescale") {
+        const auto timescale = dpchip::trace::parse_timescale(text);
+        if (timescale) part.timescale = *timescale;
+        return timescale ? 1 : 0;
     }
     bool* const flag = name == "fatal" ? &o.fatal : name == "txd_pull_up" ? &o.txd_pull_up : name == "check_timing" ? &o.check_timing : nullptr;
     if (flag == nullptr) return -1;
@@ -86,7 +110,11 @@ dpchip_pins* dpchip_pins_create(const char* variant, int millivolts) {
     }, [](int) -> dpchip_pins* { return nullptr; });
 }
 
-void dpchip_pins_destroy(dpchip_pins* part) { delete part; }
+void dpchip_pins_destroy(dpchip_pins* part) {
+    if (part == nullptr) return;
+    guarded([&] { return dpchip_pins_waves(part, nullptr); });
+    delete part;
+}
 
 const char* dpchip_pins_name(int pin) {
     if (is_pin(pin)) return pins::info(static_cast<pins::PinId>(pin)).name.data();
@@ -99,7 +127,8 @@ int dpchip_pins_direction(int pin) { return is_pin(pin) ? static_cast<int>(pins:
 int dpchip_pins_set_option(dpchip_pins* part, const char* name, const char* text) {
     if (part == nullptr || name == nullptr || text == nullptr) return fail(DPCHIP_E_ARGUMENT, "a null pointer");
     return guarded([&] {
-        const int own = set_package_option(part->package, name, text);
+        const int own = set_package_option(*part, name, text);
+        part->drain_edges();
         if (own > 0) return static_cast<int>(DPCHIP_OK);
         if (own == 0) return fail(DPCHIP_E_ARGUMENT, std::string{name} + "=" + text + ": not a value of this option");
         return dpchip::capi::set_chip_option(part->package.chip(), name, text);
@@ -115,6 +144,7 @@ int dpchip_pins_set_pin(dpchip_pins* part, int pin, int level) {
     if (part->package.failed()) return failed();
     return guarded([&] {
         part->package.set_pin(static_cast<pins::PinId>(pin), static_cast<pins::PinLevel>(level));
+        if (part->waves) part->waves->input(static_cast<pins::PinId>(pin), part->package);
         part->drain_edges();
         return part->package.failed() ? failed() : static_cast<int>(DPCHIP_OK);
     });
@@ -157,8 +187,30 @@ int dpchip_pins_next_edge(dpchip_pins* part, int64_t* ticks, int* pin, int* leve
 int dpchip_pins_watch(dpchip_pins* part, int pin, int on) {
     if (part == nullptr) return null_part();
     if (!is_pin(pin) || !pins::is_output(static_cast<pins::PinId>(pin))) return fail(DPCHIP_E_ARGUMENT, "pin " + std::to_string(pin) + " is no output");
-    part->package.watch(static_cast<pins::PinId>(pin), on != 0);
+    const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(pin);
+    part->wanted = on != 0 ? part->wanted | bit : part->wanted & ~bit;
+    part->watch(static_cast<pins::PinId>(pin));
     return DPCHIP_OK;
+}
+
+int dpchip_pins_waves(dpchip_pins* part, const char* path) {
+    if (part == nullptr) return null_part();
+    return guarded([&] {
+        if (path == nullptr) {
+            if (!part->waves) return static_cast<int>(DPCHIP_OK);
+            const bool whole = part->waves->finish(part->package.now());
+            part->waves.reset();
+            part->watch_all();
+            return whole ? static_cast<int>(DPCHIP_OK) : fail(DPCHIP_E_FILE, "not all waveforms could be written");
+        }
+        if (part->waves) return fail(DPCHIP_E_STATE, "waveforms are being drawn already; a null path ends them");
+        part->drain_edges();
+        auto waves = std::make_unique<dpchip::capi::PinWaves>(path, part->package, part->timescale);
+        if (!waves->good()) return fail(DPCHIP_E_FILE, std::string{"cannot write "} + path);
+        part->waves = std::move(waves);
+        part->watch_all();
+        return static_cast<int>(DPCHIP_OK);
+    });
 }
 
 int dpchip_pins_set_clock_phase(dpchip_pins* part, int64_t ticks) {
@@ -178,6 +230,7 @@ int dpchip_pins_clock_edge(dpchip_pins* part, int level, int64_t slope) {
     if (part->package.failed()) return failed();
     return guarded([&] {
         part->package.clock_edge(static_cast<pins::PinLevel>(level), Ticks{slope});
+        if (part->waves) part->waves->edge({part->package.now(), pins::PinId::clk, static_cast<pins::PinLevel>(level)}, part->package);
         part->drain_edges();
         return part->package.failed() ? failed() : static_cast<int>(DPCHIP_OK);
     });

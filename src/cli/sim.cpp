@@ -125,11 +125,14 @@ Ticks moment(const char* option, const std::string& text, Ticks otherwise) {
 }
 
 WaveOptions wave_options(const Arguments& a) {
-    WaveOptions o{a.vcd, a.signals, moment("--from", a.vcd_from, {}), moment("--to", a.vcd_to, core::kNever), {}};
+    WaveOptions o{a.vcd, {}};
+    o.drawn.signals = a.signals;
+    o.drawn.from = moment("--from", a.vcd_from, {});
+    o.drawn.to = moment("--to", a.vcd_to, core::kNever);
     const auto timescale = trace::parse_timescale(a.vcd_timescale);
     if (!timescale) throw Failure{ExitCode::usage, "--vcd-timescale " + a.vcd_timescale + ": write 1, 10 or 100 and fs, ps, ns, us, ms or s, as in 100ns"};
-    o.timescale = *timescale;
-    if (o.from >= o.to) throw Failure{ExitCode::usage, "--from " + a.vcd_from + " is not before --to " + a.vcd_to};
+    o.drawn.timescale = *timescale;
+    if (o.drawn.from >= o.drawn.to) throw Failure{ExitCode::usage, "--from " + a.vcd_from + " is not before --to " + a.vcd_to};
     const bool used = !a.signals.empty() || !a.vcd_from.empty() || !a.vcd_to.empty() || a.vcd_timescale != "1ps";
     if (a.vcd.empty() && used) throw Failure{ExitCode::usage, "--signals, --from, --to and --vcd-timescale are about waveforms: say --vcd FILE, too"};
     return o;

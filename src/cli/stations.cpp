@@ -104,24 +104,6 @@ master::SlaveConfig master_config(const gsd::Gsd& gsd, const SlaveEntry& entry, 
     }
 }
 
-const char* name(chip::DpState state) {
-    switch (state) {
-    case chip::DpState::wait_prm: return "WAIT-PRM";
-    case chip::DpState::wait_cfg: return "WAIT-CFG";
-    case chip::DpState::data_exch: return "DATA-EXCH";
-    }
-    return "?";
-}
-
-const char* name(chip::WdState state) {
-    switch (state) {
-    case chip::WdState::baud_search: return "BAUD_SEARCH";
-    case chip::WdState::baud_control: return "BAUD_CONTROL";
-    case chip::WdState::dp_control: return "DP_CONTROL";
-    }
-    return "?";
-}
-
 std::string rate_text(const slave::VirtualSlave& slave) {
     const auto rate = slave.baud();
     return rate && *rate != fdl::BaudCode::not_found ? std::string{fdl::baud(*rate).name} : std::string{"searching"};

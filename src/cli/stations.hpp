@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <dpchip/chip/state_names.hpp>
 #include <dpchip/cli/line_config.hpp>
 #include <dpchip/gsd/configuration.hpp>
 #include <dpchip/gsd/gsd.hpp>
@@ -32,10 +33,6 @@ std::unique_ptr<slave::VirtualSlave> make_slave(const gsd::Gsd& gsd, const Slave
 
 /// What a class-1 master is told. `watchdog_ms` holds for entries that say nothing.
 master::SlaveConfig master_config(const gsd::Gsd& gsd, const SlaveEntry& entry, std::uint32_t watchdog_ms);
-
-/// "WAIT-PRM", "BAUD_SEARCH" and their kind, as the manuals spell them.
-const char* name(chip::DpState state);
-const char* name(chip::WdState state);
 
 /// What the firmware says of faults: present rate, or "searching".
 std::string rate_text(const slave::VirtualSlave& slave);
