@@ -213,7 +213,8 @@ DPCHIP_API int dpchip_line_record(dpchip_line *line, const char *path);
    does. sim: lines only; on others DPCHIP_E_STATE. Signals, as SCOPE.NAME: line.level, the test's master.TXD, and for each
    chip that is on the line when this is called TXD, RXD, RTS, X_INT, XDATAEXCH_SYNC, Diag_Flag, WD_State, DP_State,
    Baud_Rate, Diag_Master_Add, the buffer state machines (Dout_Buffer_SM) and the interrupt requests (IRR.New_Prm_Data).
-   Of a chip that comes later only the bits in line.level and RXD are drawn, and one that leaves is unknown until it is back.
+   Of a chip that comes later, or a station that has joined, only the bits in line.level and RXD are drawn; a chip that leaves is
+   unknown until it is back. A telegram that has begun already is left out.
    The scope of a chip is its name; without one, station_8 when it has address 8, chip_2 when it has none yet and is the
    second on the line. `signals`: patterns with * and ?, with commas in between ("line.*,*.X_INT"); NULL: all.
    DPCHIP_E_NAME: a pattern fits nothing, the words list all signals, and no file is written. DPCHIP_E_FILE: the file cannot

@@ -96,11 +96,9 @@ int Line::draw(const std::string& file, std::string_view signals) {
 
 int Line::end_drawing() {
     if (waves_ == nullptr) return DPCHIP_OK;
-    look();
-    const bool whole = waves_->finish();
-    const std::string path = waves_->path();
-    waves_.reset();
-    return whole ? static_cast<int>(DPCHIP_OK) : fail(DPCHIP_E_FILE, "not all waveforms could be written to " + path);
+    const std::unique_ptr<LineWaves> ended = std::move(waves_);  // gone before the segment is, whatever happens
+    ended->look(chips, core::kNever);
+    return ended->finish() ? static_cast<int>(DPCHIP_OK) : fail(DPCHIP_E_FILE, "not all waveforms could be written to " + ended->path());
 }
 
 int Line::set_option(std::string_view name, const std::string& text) {
