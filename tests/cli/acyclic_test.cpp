@@ -144,7 +144,7 @@ TEST_F(Station, tells_who_it_is) {
 }
 
 TEST_F(Station, is_found_by_a_scan) {
-    const Result r = run({"master", "scan", "--line", path, "--baud", "12M", "--wake", "0.3", "--json"});
+    const Result r = run({"master", "scan", "--line", path, "--baud", "12M", "--json"});
     ASSERT_EQ(r.code, 0) << r.err;
     const Json found = Json::parse(r.out);
     ASSERT_EQ(found.size(), 1u) << r.out;
@@ -182,7 +182,7 @@ TEST_F(Station, raises_updates_and_clears_alarms_on_command_and_the_master_ackno
 TEST_F(Station, sets_and_clears_its_diagnosis_on_command) {
     command("diagnosis slave=5 module_status=ok,fault,no_module identifiers=1 octets=\"81 42 26\"");
     ASSERT_TRUE(server->said("diagnosis set")) << server->err();
-    const auto diagnosis = [&] { return run({"master", "diag", "--line", path, "--baud", "12M", "--station", "5"}); };
+    const auto diagnosis = [&] { return run({"master", "diag", "--line", path, "--baud", "12M", "--station", "5", "--timeout", "60"}); };
     const Result set = diagnosis();
     EXPECT_EQ(set.code, 0) << set.err;
     for (const char* words : {"Ext_Diag", "Modul_Status", "no module", "line break"}) EXPECT_NE(set.out.find(words), std::string::npos) << words << '\n' << set.out;

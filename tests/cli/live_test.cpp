@@ -120,7 +120,7 @@ TEST(MasterRun, says_why_a_slave_refuses_its_configuration) {
 TEST(MasterDiag, explains_a_slave_that_waits_for_its_parameters) {
     Program server{{"serve", "--baud", "12M", "--gsd", "builtin:remote_io", "--module", "8 DI", "--address", "5"}};
     const std::string path = server.line().substr(10);
-    const Result r = run({"master", "diag", "--line", path, "--baud", "12M", "--station", "5"});
+    const Result r = run({"master", "diag", "--line", path, "--baud", "12M", "--station", "5", "--timeout", "60"});
     EXPECT_EQ(r.code, 0) << r.err;
     EXPECT_NE(r.out.find("Prm_Req"), std::string::npos) << r.out;
     EXPECT_NE(r.out.find("FFF0H"), std::string::npos) << r.out;
@@ -130,7 +130,7 @@ TEST(MasterDiag, explains_a_slave_that_waits_for_its_parameters) {
 TEST(MasterScan, lists_stations_with_ident_numbers) {
     Program server{{"serve", "--baud", "12M", "--gsd", "builtin:remote_io", "--module", "8 DI", "--address", "5", "--gsd", "builtin:remote_io", "--module", "8 DO", "--address", "17"}};
     const std::string path = server.line().substr(10);
-    const Result r = run({"master", "scan", "--line", path, "--baud", "12M", "--wake", "0.3", "--json"});
+    const Result r = run({"master", "scan", "--line", path, "--baud", "12M", "--json"});
     ASSERT_EQ(r.code, 0) << r.err;
     const Json found = Json::parse(r.out, nullptr, false);
     ASSERT_EQ(found.size(), 2u) << r.out;

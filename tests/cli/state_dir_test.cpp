@@ -72,7 +72,7 @@ TEST_F(StateDir, keeps_the_address_of_set_slave_add_over_a_restart) {
     EXPECT_FALSE(fs::exists(file().string() + ".new"));
     Program server{serve()};
     const std::string path = server.line().substr(10);
-    EXPECT_EQ(run({"master", "diag", "--line", path, "--baud", "12M", "--station", "9"}).code, 0);
+    EXPECT_EQ(run({"master", "diag", "--line", path, "--baud", "12M", "--station", "9", "--timeout", "60"}).code, 0);
 }
 
 TEST_F(StateDir, names_a_damaged_file_by_its_line) {
