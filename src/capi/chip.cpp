@@ -77,7 +77,7 @@ void dpchip_chip::before_access(Ticks duration) {
         return;
     }
     line->spend(duration);
-    attachment.advance(line->now());
+    attachment.advance(line->segment().now());  // not the wall clock: the line moves its chips, and is behind it
 }
 
 void dpchip_chip::after_access() {

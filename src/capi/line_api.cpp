@@ -41,7 +41,7 @@ Ticks run(dpchip::capi::Line& line, Ticks duration) {
 }
 
 void put_on(dpchip::capi::Line& line, dpchip_chip& chip) {
-    chip.attachment.set_offset(chip.model.now() - line.now());
+    chip.attachment.set_offset(chip.model.now() - line.segment().now());  // a live line's clock may be further on
     const auto index = line.segment().attach(chip.attachment, std::string{chip.model.traits().name});
     if (!index) throw std::logic_error{dpchip::segment::name(index.error())};
     chip.index = *index;

@@ -281,4 +281,19 @@ TEST(Capi, a_live_line_has_a_path_and_no_test_master) {
     EXPECT_LT(dpchip_line_run(line.get(), 60'000'000'000), 60'000'000'000) << "stop() ends the next run";
 }
 
+/// The clock of a live line is ahead of what the line has done; a chip goes with the line. Builds with assertions stop when
+/// a chip's time turns back.
+TEST(Capi, time_never_turns_back_for_a_chip_on_a_live_line) {
+    const LinePtr line{dpchip_line_open("pty", 0)};
+    ASSERT_NE(line, nullptr) << dpchip_last_error();
+    const ChipPtr chip{dpchip_chip_create("vpc3+c")};
+    ASSERT_EQ(dpchip_line_attach(line.get(), chip.get()), DPCHIP_OK) << dpchip_last_error();
+    for (int round = 0; round < 3; ++round) {
+        for (std::uint16_t address = 0x16; address < 0x40; ++address) dpchip_chip_write(chip.get(), address, 0x55);
+        EXPECT_EQ(dpchip_chip_read(chip.get(), 0x20), 0x55);
+        EXPECT_GE(dpchip_line_run(line.get(), 1'000'000), 0);
+    }
+    EXPECT_EQ(dpchip_line_detach(line.get(), chip.get()), DPCHIP_OK);
+}
+
 }  // namespace
