@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <fstream>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/folder.hpp"
 #include "cli/process.hpp"
 
 namespace {
 
+using dpchip::test::Folder;
 using dpchip::test::Program;
 using dpchip::test::Result;
 using dpchip::test::run;
@@ -22,21 +22,6 @@ namespace fs = std::filesystem;
 
 const std::string kGsd = "builtin:dpv1_io";
 const std::string kModule = "8 DI / 8 DO";
-
-struct Folder {
-    fs::path path = fs::temp_directory_path() / ("dpchip_dpv1_" + std::to_string(::getpid()) + '_' + testing::UnitTest::GetInstance()->current_test_info()->name());
-    Folder() { fs::create_directories(path); }
-    ~Folder() {
-        std::error_code error;
-        fs::remove_all(path, error);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    std::string file(const std::string& name, const std::string& text) const {
-        std::ofstream(path / name, std::ios::binary) << text;
-        return (path / name).string();
-    }
-};
 
 /// `serve` with one DP-V1 station at address 5, records and identification from a TOML file.
 struct Station : testing::Test {

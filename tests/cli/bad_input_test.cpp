@@ -4,34 +4,19 @@
 #include <filesystem>
 #include <fstream>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
+#include "cli/folder.hpp"
 #include "cli/process.hpp"
 #include "support/golden.hpp"
 
 namespace {
 
+using dpchip::test::Folder;
 using dpchip::test::Program;
 using dpchip::test::Result;
 using dpchip::test::run;
 namespace fs = std::filesystem;
-
-struct Folder {
-    fs::path path = fs::temp_directory_path() / ("dpchip_cli_" + std::to_string(::getpid()) + '_' + testing::UnitTest::GetInstance()->current_test_info()->name());
-    Folder() { fs::create_directories(path); }
-    ~Folder() {
-        std::error_code error;
-        fs::remove_all(path, error);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    std::string file(const std::string& name, const std::string& text) const {
-        std::ofstream(path / name, std::ios::binary) << text;
-        return (path / name).string();
-    }
-};
 
 struct Case {
     const char* what;
